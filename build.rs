@@ -1,5 +1,4 @@
-//! Says which commit a program is built from: of `squall`, and of `squall-gateway` in a folder
-//! below.
+//! Tells a program which commit it is built from, both `squall` and `squall-gateway` in a folder below.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -24,8 +23,7 @@ fn main() {
         "cargo::rustc-env=SQUALL_COMMIT={}",
         commit.as_deref().unwrap_or("unknown")
     );
-    // Of a new commit HEAD's log tells; whether the sources are as committed may change with any of
-    // them.
+    // HEAD's log changes with a new commit; whether the sources are as committed may change with any of them.
     let watched = ["HEAD", "logs/HEAD"]
         .into_iter()
         .filter_map(|file| git(&root, &["rev-parse", "--git-path", file]));

@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 }
 
-/// Demands of a valid game that its boats cannot meet.
+/// Requirements of a valid game that its boats cannot meet.
 fn warnings(file: &Path, kind: Kind) -> Vec<String> {
     if kind != Kind::GAME {
         return Vec::new();

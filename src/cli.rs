@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The subcommands by purpose, in help order. Those that need a network are not in every build.
+/// The subcommands by purpose, in help order. Commands that need a network are not in every build.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
@@ -101,8 +101,7 @@ pub(crate) fn command() -> Command {
         .after_help(text)
 }
 
-/// Parses the command line. On a command that only another build has, it exits and names that
-/// build.
+/// Parses the command line. If only another build has the command, it exits and names that build.
 pub(crate) fn matches() -> ArgMatches {
     let mut command = number::with_negative_numbers(command());
     command
@@ -186,7 +185,7 @@ fn with_names(command: Command) -> Command {
             .map(|value| names_for(&value))
             .filter(|names| !names.is_empty())
         {
-            // clap wants static names, and this process ends soon.
+            // clap requires static names, and this process ends soon.
             Some(names) => arg.value_parser(PossibleValuesParser::new(
                 names.into_iter().map(|name| &*name.leak()),
             )),
@@ -196,7 +195,7 @@ fn with_names(command: Command) -> Command {
     command.mut_args(with_names_of).mut_subcommands(with_names)
 }
 
-/// The names that a value with this placeholder in the help may have.
+/// The possible names for a value with this placeholder in the help.
 fn names_for(value: &str) -> BTreeSet<String> {
     let all = |kinds: &[Kind]| {
         kinds
@@ -254,7 +253,7 @@ mod tests {
             known.iter().all(|name| grouped.contains(name)),
             "{grouped:?} lacks one of {known:?}"
         );
-        // The other commands are in the build with the network.
+        // The other commands are only in the build with the network.
         assert_eq!(
             grouped.len() == known.len(),
             cfg!(feature = "network"),

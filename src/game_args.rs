@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
-    /// Game: a file, or the name of a built-in game or of one in scenarios/games
+    /// Game: a file, or the name of a game, built-in or in scenarios/games
     #[arg(value_name = "GAME", value_parser = scenario_files::file_of(Kind::GAME))]
     scenario: PathBuf,
     /// Random seed [default: the seed in the game file]
@@ -24,24 +24,24 @@ pub(crate) struct GameArgs {
     /// Field to use instead of the game's: a file or a name
     #[arg(long, value_name = "FIELD", value_parser = scenario_files::file_of(Kind::FIELD))]
     field: Option<PathBuf>,
-    /// Strategy of all blue boats, instead of those in the game: a file, or a name, which is looked
-    /// up first in the strategies folder next to the game's folder
+    /// Strategy for all blue boats, overriding the game's: a file, or a name, which is looked up first in the
+    /// strategies folder next to the game's folder
     #[arg(long, value_name = "STRATEGY")]
     blue: Option<String>,
-    /// Strategy of all red boats, as for --blue
+    /// Strategy for all red boats, as for --blue
     #[arg(long, value_name = "STRATEGY")]
     red: Option<String>,
-    /// Strategy of all boats of this team, as for --blue; repeatable
+    /// Strategy for all boats of this team, as for --blue; may be repeated
     #[arg(long, value_name = "TEAM=FILE", value_parser = team_and_file)]
     strategy: Vec<(String, String)>,
     /// Exchanges the teams' strategies
     #[arg(long)]
     pub(crate) exchange_strategies: bool,
     /// Overrides a value in the scenario files, for example sea.wind.speed_m_s=12,
-    /// boat.gps.noise_m=2 or link.delay_s=1; repeatable
+    /// boat.gps.noise_m=2 or link.delay_s=1; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Setting::parse)]
     settings: Vec<Setting>,
-    /// Simulates all external boats, as a rehearsal
+    /// Simulates all external boats instead of waiting for gateways
     #[arg(long)]
     rehearse: bool,
     /// Writes the result to this file as JSON
@@ -97,7 +97,7 @@ impl GameArgs {
         )
     }
 
-    /// Says so if a rehearsal differs from the game in nothing.
+    /// Prints a remark if a rehearsal does not differ from the game.
     pub(crate) fn remark_on_rehearsal(&self) -> Result<()> {
         let overrides = Overrides {
             simulate_all: false,
@@ -151,7 +151,7 @@ impl GameArgs {
             })?;
             if overrides.strategies.insert(team.to_owned(), path).is_some() {
                 bail!(UsageError(format!(
-                    "the strategy of team {team} is given twice, expected one"
+                    "the strategy of team {team} is given twice, expected once"
                 )));
             }
         }

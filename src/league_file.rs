@@ -1,4 +1,4 @@
-//! The folder of a league: an append-only file of game results, and the newest report.
+//! A league's folder: an append-only file of game results, and the newest report.
 
 use crate::output_file;
 use anyhow::{Context, Result, bail};
@@ -22,8 +22,7 @@ pub(crate) struct LeagueFile {
 }
 
 impl LeagueFile {
-    /// Opens the league in a folder, which is created if missing. Drops a last line that was cut
-    /// off.
+    /// Opens the league in a folder, which is created if missing. Drops a truncated last line.
     pub(crate) fn open(folder: &Path) -> Result<LeagueFile> {
         output_file::make_folder(folder)?;
         let path = folder.join(RESULTS);

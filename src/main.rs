@@ -83,7 +83,7 @@ enum Command {
     /// Trains a policy against itself, earlier versions of itself and scripted strategies.
     #[command(after_help = "Examples:\n  squall train first\n  squall train first --resume")]
     Train(train_command::Args),
-    /// Lists recorded games, the newest first.
+    /// Lists recorded games, newest first.
     #[command(after_help = "Examples:\n  squall runs")]
     Runs(runs_command::Args),
     /// Analyses a recorded game: summary, tables, MOOS logs, comparison with another game.

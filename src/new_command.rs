@@ -120,7 +120,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
             let guess = did_you_mean(name, &known);
             bail!(UsageError(format!(
-                "there is no file {}{guess}; list all files with: squall files",
+                "no file named {:?}{guess}; list all files with: squall files",
                 args.name
             )));
         }
@@ -128,26 +128,26 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
             let one = one.folder();
             let other = other.folder();
             bail!(UsageError(format!(
-                "several files have the name {name}, expected {one}/{name} or {other}/{name}"
+                "the name {name:?} is ambiguous: use {one}/{name} or {other}/{name}"
             )));
         }
     };
     let path = write(kind, args.as_name.as_deref().unwrap_or(name), content)?;
     screen::print(&format!(
-        "created {}; edit it. The files that it names are built in\n",
+        "created {}, which refers to built-in files; edit it as you like\n",
         path.display()
     ));
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes a file where its name will be found; never overwrites one.
+/// Writes a file where its name will be found; never overwrites an existing file.
 fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
     let path = Path::new("scenarios")
         .join(kind.folder())
         .join(format!("{name}.toml"));
     if path.exists() {
         bail!(UsageError(format!(
-            "the file {} exists already; choose another name",
+            "the file {} already exists; choose another name",
             path.display()
         )));
     }

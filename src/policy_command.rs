@@ -30,13 +30,13 @@ pub(crate) struct Args {
     /// With --game: time of the decision, s
     #[arg(long, value_name = "SECONDS", requires = "game", value_parser = seconds)]
     at: Option<f64>,
-    /// Number of inputs to list, the most influential first
+    /// Number of inputs to list, most influential first
     #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = whole::<usize>(0, u64::MAX))]
     inputs: usize,
     /// Writes the policy to this folder as an entry for the Maritime Capture the Flag competition
     #[arg(long, value_name = "FOLDER", conflicts_with = "game")]
     submission: Option<PathBuf>,
-    /// With --submission: actions are drawn by their probabilities, instead of the likeliest taken
+    /// With --submission: samples actions from their probabilities instead of taking the most likely one
     #[arg(long, requires = "submission")]
     sampled: bool,
 }
@@ -182,7 +182,7 @@ fn explained(
     let recording = Arc::new(recording_file::open(game, "read")?);
     let scenario = recording.scenario();
     let of = scenario.vehicle_named(vehicle)?;
-    // The cast saturates: a time out of range becomes a decision that does not exist.
+    // The cast saturates: a time out of range becomes a nonexistent decision.
     let decision = (at_s / scenario.decision().as_s() + 1e-9).floor() as u64;
     let found = Minds::new(Arc::clone(&recording))
         .report_of(of, decision)
@@ -224,7 +224,7 @@ fn explained(
     Ok(text)
 }
 
-/// The likeliest actions, and how the choice changes without each input.
+/// The most likely actions, and how the choice changes without each input.
 fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usize) -> String {
     let chosen = choice(model, observed);
     let mut text = String::new();

@@ -23,14 +23,14 @@ const TURN_EVERY: Duration = Duration::from_millis(200);
 pub(crate) fn tell_rounded(games: u32, each: &str) {
     if !games.is_multiple_of(2) {
         screen::remark(&format!(
-            "{games} games per {each} become {}: half of them are played on each side",
+            "rounding {games} games per {each} up to {}, so that half can be played from each side",
             games + 1
         ));
     }
 }
 
 impl Progress {
-    /// Progress of this many games, none played yet.
+    /// Progress of this many games, none of which has been played yet.
     pub(crate) fn of_games(games: u64) -> Progress {
         let progress = Progress::of(games, "games");
         if progress.bar.is_hidden() {
@@ -39,7 +39,7 @@ impl Progress {
         progress
     }
 
-    /// Progress of this many items, none done yet.
+    /// Progress of this many items, none of which is done yet.
     pub(crate) fn of(count: u64, noun: &'static str) -> Progress {
         let style =
             format!("{{wide_bar}} {{human_pos}}/{{human_len}} {noun}  {{per_sec}}  {{eta}} left");

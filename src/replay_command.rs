@@ -11,11 +11,11 @@ mod check;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Recording to replay: a file, or a part of a name that `squall runs` lists [default: the
+    /// Recording to replay: a file, or part of a name listed by `squall runs` [default: the
     /// newest in runs]
     #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     pub(crate) file: Option<PathBuf>,
-    /// Reruns the game from its recorded inputs, without minds, and reports whether the result is
+    /// Reruns the game from its recorded inputs, without running the agents, and reports whether the result is
     /// identical
     #[arg(long)]
     pub(crate) check: bool,

@@ -45,7 +45,7 @@ pub(crate) fn text(report: &Report) -> String {
         "\n{end} after {:.0} s ({} ticks, {} {} s, {}x real time)\n",
         outcome.duration_s,
         outcome.ticks,
-        run.pace,
+        run.pace.replace("in process", "computed in"),
         significant(run.wall_s),
         significant(outcome.duration_s / run.wall_s.max(1e-9))
     );

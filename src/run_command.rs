@@ -31,16 +31,16 @@ pub(crate) struct Args {
     /// Plays again whenever a scenario file of the game changes, until Ctrl-C
     #[arg(long)]
     watch_files: bool,
-    /// Plays in this process, without a network; the game is the same, byte for byte
+    /// Plays in this process, without a network; results are identical, byte for byte
     #[arg(long)]
     pub(crate) in_process: bool,
-    /// With --in-process: number of threads on which the minds of large fleets decide; does not
-    /// affect results [default: one per core]
+    /// With --in-process: number of threads that compute the boats' decisions, for large fleets; does not affect
+    /// results [default: one per core]
     #[arg(long, value_name = "N", requires = "in_process", value_parser = whole::<NonZeroUsize>(1, u64::MAX))]
     pub(crate) jobs: Option<NonZeroUsize>,
 }
 
-/// The command that shows a recorded game; in a build without the page, the one that analyses it.
+/// The command that shows a recorded game; in a build without the page, the command that analyses it.
 const LOOK: &str = if cfg!(feature = "network") {
     "squall replay"
 } else {
@@ -82,7 +82,7 @@ pub(crate) fn run(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     play_once(args, player, &scenario, &stop)
 }
 
-/// Plays again whenever a file of the game changes, even after a file with mistakes.
+/// Plays again whenever a file of the game changes, even if a previous version had mistakes.
 fn play_when_saved(args: &Args, player: &mut dyn Player) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     loop {
@@ -153,7 +153,7 @@ fn play(
         .as_ref()
         .is_some_and(|report| report.outcome.ends_differ);
     if has_advantage && !args.both_sides && !both_sides::are_equal(scenario) {
-        screen.line("to give both strategies both ends, add --both-sides");
+        screen.line("to play both strategies from both ends, add --both-sides");
     }
     let file = path.filter(|path| path.exists());
     if let Some(file) = &file {
@@ -163,7 +163,7 @@ fn play(
         let recorded = if is_whole {
             "recorded"
         } else {
-            "recorded in part"
+            "partly recorded"
         };
         screen.line(&format!(
             "{recorded}; show it with: {} {}",
@@ -224,7 +224,7 @@ impl Player for InProcess {
         let threads = experiment::threads(self.jobs, scenario.vehicles.len());
         let seed = args.seed(scenario);
         let report = in_process::play(scenario, seed, file, (threads, stop), |contest| {
-            // Reading the clock takes longer than a decision: read it only now and then.
+            // Reading the clock takes longer than a decision, so read it only occasionally.
             if contest.decision().is_multiple_of(64) && shown.0.elapsed() >= SHOW_EVERY {
                 let now_s = contest.now().as_s();
                 let rate = (now_s - shown.1) / shown.0.elapsed().as_secs_f64();

@@ -117,7 +117,7 @@ impl Drop for Screen {
     }
 }
 
-/// A line, cut to the width of the terminal; whole if there is no terminal.
+/// A line, truncated to the width of the terminal; the whole line if there is no terminal.
 pub(crate) fn cut(line: &str) -> String {
     let width = if std::io::stdout().is_terminal() {
         columns().saturating_sub(1)

@@ -1,4 +1,4 @@
-//! `squall sea`: describes what a sea means for a boat, in numbers and as a plot.
+//! `squall sea`: describes how a sea affects a boat, in numbers and as a plot.
 
 use crate::trial_command::usual_tick_s;
 use crate::{plot, screen, water_args};
@@ -19,7 +19,7 @@ pub(crate) struct Args {
     /// Sea to describe: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of(scenario::Kind::SEA))]
     sea: PathBuf,
-    /// Boat for which effects are computed: a file, or the name of a boat in scenarios/boats
+    /// Boat to compute the effects for: a file, or the name of a boat in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]
     boat: String,
     /// Random seed for waves, gusts, eddies and the randomised values of sea and boat

@@ -26,7 +26,7 @@ pub(crate) struct Args {
     /// Folder for the tables and the report [default: runs/sweep/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Resumes the sweep in the output folder; the results are the same as without interruption.
+    /// Resumes the sweep in the output folder; the results are the same as without interruption
     #[arg(long)]
     resume: bool,
 }

@@ -28,7 +28,7 @@ pub(crate) struct Args {
     /// Tournament to play, or two or more strategies: files or names
     #[arg(required = true, value_name = "TOURNAMENT")]
     entries: Vec<String>,
-    /// Game that strategies play: a file or a name [default: surveyor_2v2]
+    /// Game for the strategies to play: a file or a name [default: surveyor_2v2]
     #[arg(long, value_name = "GAME", value_parser = scenario_files::file_of(Kind::GAME))]
     game: Option<PathBuf>,
     /// Games per pairing, half of them on each side [default: the number in the file]
@@ -46,11 +46,11 @@ pub(crate) struct Args {
     /// Writes one line per entry to this file as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Keeps the results in this folder and plays only the missing games, so that you can add
-    /// entries or resume a stopped tournament; `squall view FOLDER` shows it
+    /// Stores the results in this folder and plays only the missing games, so that you can add entries or resume a
+    /// stopped tournament; `squall view FOLDER` shows it
     #[arg(long, value_name = "FOLDER", conflicts_with = "quality")]
     league: Option<PathBuf>,
-    /// Also reports the quality of play: chatter, standing still, edges, contacts, orbits
+    /// Also reports the quality of play: order chatter, idle time, time near the edges, contacts and circling
     #[arg(long)]
     quality: bool,
 }
@@ -230,7 +230,7 @@ fn between(strategies: &[String], game: Option<&Path>) -> Result<Tournament> {
     let names: BTreeSet<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
     ensure!(
         names.len() == entries.len(),
-        "a strategy is given twice, expected different names of strategies"
+        "a strategy is given twice, expected strategies with different names"
     );
     let name = Vec::from_iter(names).join("_");
     let game = game.map_or_else(

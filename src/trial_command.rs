@@ -62,7 +62,7 @@ pub(crate) struct ManoeuvreArgs {
     /// Duration of the approach, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = within(0.0, 3600.0, "s"), conflicts_with = "orders")]
     approach_s: f64,
-    /// Turns to port, or begins a zigzag to port, instead of starboard
+    /// Turns to port, or begins a zigzag to port, instead of to starboard
     #[arg(long, conflicts_with = "orders")]
     to_port: bool,
     /// For a zigzag: heading change at which the boat reverses its turn, degrees (10 for 10/10, 20
@@ -127,7 +127,7 @@ pub(crate) fn tick(text: &str) -> Result<f64, String> {
     trial::ticks_per_row(SimTime::from_s(tick_s)).map(|_| tick_s)
 }
 
-/// The tick for which a boat's reference numbers hold, s.
+/// The tick for which a boat's reference values are valid, s.
 pub(crate) fn usual_tick_s(boat: &Boat) -> f64 {
     match boat.drive {
         Drive::Thrusters { .. } => 0.05,

@@ -1,4 +1,4 @@
-//! Watches files for changes, so that a user sees the effect of saving one.
+//! Watches files for changes, so that a user sees the effect of saving a file.
 
 use crate::stop;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ type Stamp = Option<(SystemTime, u64)>;
 pub(crate) struct WatchedFiles(Vec<(PathBuf, Stamp)>);
 
 impl WatchedFiles {
-    /// Records the present stamps of these files.
+    /// Records the current stamps of these files.
     pub(crate) fn new(paths: impl IntoIterator<Item = PathBuf>) -> WatchedFiles {
         WatchedFiles(
             paths

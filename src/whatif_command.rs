@@ -1,4 +1,4 @@
-//! `squall whatif`: what would have happened from a moment of a recorded game on with other minds.
+//! `squall whatif`: what would have happened after a given time of a recorded game with other minds.
 
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
@@ -24,10 +24,10 @@ use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Recording: a file, or a part of a name that `squall runs` lists [default: the newest in runs]
+    /// Recording: a file, or part of a name listed by `squall runs` [default: the newest in runs]
     #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     file: Option<PathBuf>,
-    /// Time from which futures differ from the recorded game, s
+    /// Time after which futures differ from the recorded game, s
     #[arg(long, value_name = "SECONDS", value_parser = within(0.0, 86_400.0, "s"))]
     at: f64,
     /// Strategy that all blue boats continue with: a file or a name
@@ -36,7 +36,7 @@ pub(crate) struct Args {
     /// Strategy that all red boats continue with
     #[arg(long, value_name = "STRATEGY")]
     red: Option<String>,
-    /// Strategy that one boat continues with; repeatable
+    /// Strategy that one boat continues with; may be repeated
     #[arg(long, value_name = "NAME=STRATEGY", value_parser = boat_and_strategy)]
     vehicle: Vec<(String, String)>,
     /// Number of futures
@@ -66,7 +66,7 @@ struct Compared<'a> {
     game: &'a str,
     at_s: f64,
     teams: [&'a str; 2],
-    /// For each future the game as recorded and with the changes.
+    /// Each future's game, as recorded and with the changes.
     futures: &'a [[Game; 2]],
 }
 
@@ -74,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = recording_file::or_newest(args.file.as_deref())?;
     let recording = recording_file::open(&file, "play on")?;
     let past = past_at(&recording, args.at)
-        .with_context(|| format!("cannot play {} on", file.display()))?;
+        .with_context(|| format!("cannot continue {}", file.display()))?;
     let changes = changes(args, &past)?;
     for path in args.json.iter().chain(&args.record) {
         output_file::check(path, "the result")?;
@@ -202,12 +202,12 @@ fn changes(args: &Args, past: &Past) -> Result<Vec<(VehicleId, Box<Strategy>)>> 
     }
     ensure!(
         !changes.is_empty(),
-        UsageError("nothing is changed, expected --blue, --red or --vehicle".to_owned())
+        UsageError("nothing would change, expected --blue, --red or --vehicle".to_owned())
     );
     Ok(changes)
 }
 
-/// How much better a team does than the other in a game, points.
+/// A team's lead over the other in a game, points.
 fn margin(game: &Game) -> i64 {
     i64::from(game.score[0]) - i64::from(game.score[1])
 }
@@ -221,7 +221,7 @@ fn most_affected(futures: &[[Game; 2]]) -> usize {
         .unwrap_or(0)
 }
 
-/// What is compared: its name, its value in a game for a team, and whether that is a share.
+/// What is compared: its name, its value in a game for a team, and whether that is a fraction.
 type Quantity = (&'static str, fn(&Game, usize) -> f64, bool);
 
 const QUANTITIES: [Quantity; 7] = [
@@ -257,7 +257,7 @@ fn of(game: &Game, team: usize, count: fn(&Counts) -> u32) -> f64 {
 /// The table of all quantities, with 95 % intervals.
 fn text(name: &str, at_s: f64, teams: [&str; 2], futures: &[[Game; 2]]) -> String {
     let mut text = format!(
-        "{} futures of {name} from {at_s} s on, each with the same draws as recorded and changed\n\n\
+        "{} futures of {name} from {at_s} s on, each with the same random numbers for both columns\n\n\
          {:<22}{:>16}{:>16}{:>18}\n",
         futures.len(),
         "a game, ± 95 %",
@@ -303,7 +303,7 @@ fn record(
     changes: whatif::Changes<'_>,
     future: usize,
 ) -> Result<()> {
-    // `check` has created it if it did not exist, and removed it; nothing is overwritten.
+    // If the file did not exist, `check` has created and removed it; nothing is overwritten.
     let file =
         NewFile::create(path).with_context(|| format!("cannot record to {}", path.display()))?;
     let mut recorder = GameRecorder::in_process(file, name, env!("SQUALL_COMMIT"));
@@ -326,7 +326,7 @@ fn record(
         problem.unwrap_or_default()
     );
     screen::remark(&format!(
-        "future {future}, which the changes affect most; show it with: squall replay {}",
+        "future {future} is affected most by the changes; show it with: squall replay {}",
         path.display()
     ));
     Ok(())

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the lines of "A day on the water" in docs/gateway.md, as they stand there, with emulated boats: `tests/day_on_the_water.sh PATH/OF/squall`.
-# Says what failed, and ends with 1.
+# Runs the lines of "A day on the water" in docs/gateway.md, exactly as printed there, with emulated boats:
+# `tests/day_on_the_water.sh PATH/OF/squall`. On failure, prints what failed and exits with 1.
 set -euo pipefail
 program=$(realpath "$1")
 page=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../docs/gateway.md")
@@ -24,7 +24,7 @@ fail() {
     exit 1
 }
 
-# Starts what stays, with what it says in a file.
+# Starts a command that keeps running, with its output in a file.
 start() {
     local said=$1
     shift
@@ -32,7 +32,7 @@ start() {
     started+=($!)
 }
 
-# The address of a boat, once its emulator says it.
+# The address of a boat, once its emulator has printed it.
 address() {
     for _ in $(seq 300); do
         grep -o 'tcp://[0-9.:]*' "$1.txt" 2>/dev/null && return
@@ -55,16 +55,16 @@ for line in "${lines[@]}"; do
     case $line in
     BLUE=*)
         eval "$line"
-        # These are the boats that are there.
+        # These boats exist.
         BLUE=$blue_boat RED=$red_boat
         ;;
-    *"# a terminal of its own")
+    *"# in its own terminal")
         terminals=$((terminals + 1))
         [[ $line != "squall view"* ]] || line="${line%%#*} --listen 127.0.0.1:0"
         start "terminal_$terminals" bash -c "BLUE=$BLUE RED=$RED; exec $line"
         ;;
     *)
-        # As somebody does who reads why it is refused and tries again.
+        # Like an operator who reads why it was refused and tries again.
         for attempt in $(seq 60); do
             eval "$line" >said.txt 2>&1 && break
             ((attempt < 60)) || fail "$line"

@@ -2,7 +2,7 @@
 """Runs every command that Squall documents: `tests/documented_commands.py PATH/OF/squall [PART OF A PLACE]`.
 
 Commands come from the help, the templates, the hints in the program's own output, README.md, docs/ and scenarios/.
-Each page has an empty folder and one shell, so that its commands follow each other as a reader types them. Output that
+Each page has an empty folder and one shell, so that its commands follow one another as a reader types them. Output that
 a page shows must be the real output. The first hint of each kind follows the command that printed it. The tables below
 list every exception with its reason. A command that fails, and an entry that excuses nothing, are errors. Ends with 1
 if there are any.
@@ -22,17 +22,17 @@ ROOT = Path(__file__).resolve().parent.parent
 
 # Commands that cannot run here, as regular expressions over whole commands, with the reason.
 SKIPPED = {
-    r"squall (watch|view) --game \S+": "a hint about a game that is over by now",
+    r"squall (watch|view) --game \S+": "a hint about a game that is already over",
     r".* --blue A --red B .*": "a hint in which A and B stand for files",
     r".*(10\.0\.0\.\d+|192\.168\.\d+\.\d+).*": "needs another host or a boat at this address",
     r"squall gateway (check|stop|surveyor|tell|replay|console)\b.*": "needs a boat; tests/process drives emulated ones",
     r"squall log runs/gateway-.*": "needs the recording of a boat's gateway",
-    r"squall view --game day.*": "belongs to a game with boats, in a terminal of its own",
+    r"squall view --game day.*": "belongs to a game with boats, in its own terminal",
     r"squall run .*--blue imported.*|squall (strategy|policy) imported.*": "needs a model that the reader has trained",
     r"squall (trial|identify) .*field\.csv.*": "needs the reader's log of a boat; tests/command/trial.rs has one",
     r"squall keys new keys --help": "prints help; the keys page creates keys",
     r"source <\(squall completions zsh\)|squall completions fish \| source": "needs its shell; tests/terminal.py has them",
-    r"squall moos .*blue_two=tcp.*": "needs a MOOSDB of the reader's; tests/moos_peer.py has one",
+    r"squall moos .*blue_two=tcp.*": "needs the reader's own MOOSDB; tests/moos_peer.py has one",
     r"squall ros messages .* && colcon .*": "needs a ROS 2 workspace; tests/ros_peer.py reads the package",
 }
 
@@ -60,7 +60,7 @@ SERVES = {
     r"squall gateway emulate (?!.*--help).*": "",
     r"squall watch.*": "blue",
     r"squall moos --team.*": "MOOSTimeWarp",
-    r"squall ros bridge.*": "ROS 2 sees",
+    r"squall ros bridge.*": "to ROS 2",
     r"squall gateway sitl .*": "firmware at",
 }
 
@@ -80,7 +80,7 @@ BESIDE = {
 # Commands whose real output differs from the one shown.
 UNCOMPARED = {r"squall policy runs/train/first/best\.onnx --game.*": "the training was shortened"}
 
-# What a reader does by hand before the commands of a page.
+# Steps that a reader does by hand before the commands of a page.
 PREPARED = {
     "docs/first-boat.md": "squall copy mixed_2v2 my_game && squall copy surveyor my_boat",
     "docs/recordings.md": "squall run attack_1v1 --in-process; for name in GAME OTHER FIELD SIMULATION; do squall run attack_1v1 --in-process --record $name"
@@ -88,12 +88,12 @@ PREPARED = {
     "docs/page.md": "squall run attack_1v1 --in-process && cp runs/*.mcap FILE.mcap && cp runs/*.mcap REPORT.mcap",
 }
 
-# Words that stand for the reader's own value, with one for the test.
+# Placeholders for the reader's own values, with a value for the test.
 PLACEHOLDERS = {" FILE": " FILE.mcap", " REPORT": " REPORT.mcap"}
 
 
 class Failure(Exception):
-    """A command that does not do what its page says."""
+    """A command that does not behave as its page says."""
 
 
 def matching(table, command):
@@ -101,9 +101,9 @@ def matching(table, command):
 
 
 def normal(text):
-    """Text without what differs between runs and machines: durations, speeds and times of recording."""
+    """Text without the parts that differ between runs and machines: durations, speeds and times of recording."""
     text = re.sub(r"\d{8}T\d{6}Z", "TIME", text)
-    text = re.sub(r"(lockstep|in process) [\d.]+ s, [\d.]+x", r"\1 WALL", text)
+    text = re.sub(r"(lockstep|in process|computed in) [\d.]+ s, [\d.]+x", r"\1 WALL", text)
     return [" ".join(line.split()) for line in text.splitlines()]
 
 
@@ -141,7 +141,7 @@ class Page:
 
     def run(self, command):
         """Runs one command as typed; returns its output, or none if it is skipped or ended early."""
-        command = re.sub(r"\s+#.*$|\s+# a terminal of its own", "", command).strip()
+        command = re.sub(r"\s+#.*$|\s+# in its own terminal", "", command).strip()
         for word, value in PLACEHOLDERS.items():
             command = re.sub(rf"{word}$", value, command)
         if name := re.fullmatch(r"(\w+)=(.*)", command):
@@ -238,7 +238,7 @@ class Checker:
                 missing = [self.missing(text, output) for output in outputs]
                 if None not in missing:
                     self.errors.append(f"{place}: shows a line that the commands above do not print:\n    {missing[0]}")
-            # Only what follows the commands directly is their output.
+            # Only the text directly after the commands is their output.
             outputs = []
         page.close()
 
@@ -258,7 +258,7 @@ def check_prose(checker, place, markdown):
         done = subprocess.run([f"{checker.bin}/squall", *path, "--help"], capture_output=True, text=True)
         unknown = [word for word in words if word.startswith("--") and word.split("=")[0] not in done.stdout]
         if done.returncode or unknown:
-            checker.errors.append(f"{place}: {command}: there is no {' '.join(unknown or path)}")
+            checker.errors.append(f"{place}: {command}: unknown: {' '.join(unknown or path)}")
 
 
 def blocks_of(markdown):

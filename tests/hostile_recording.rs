@@ -1,5 +1,4 @@
-//! Every reader of recordings answers or refuses, whatever a recording contains and however it is
-//! damaged.
+//! Every reader of recordings returns a result or an error, whatever a recording contains and however it is damaged.
 
 use analysis::table::TableError;
 use analysis::{Comparison, GameSeries, Summary, alog, table};
@@ -228,7 +227,7 @@ proptest! {
         }
     }
 
-    /// As a power cut may leave a file: its length is written, and some blocks are not.
+    /// A file as a power cut may leave it: its length is written, but some blocks are not.
     #[test]
     fn files_with_zeros_never_panic(
         decisions in proptest::collection::vec(odd_decision(), 0..5),

@@ -2,9 +2,9 @@
 
     moos_peer.py PATH/OF/squall
 
-Plays a game in real time in which pymoos2 drives a boat: it goes to a point, asks for tags, gets one, and is killed. Then strangers send
-garbage or read nothing, and the game continues. Prints the latency of a round trip through the MOOSDB beside that of bare TCP. Ends with
-an error at the first thing that is not as it should be.
+Plays a game in real time in which pymoos2 drives a boat: it goes to a point, requests tags, gets one, and is killed.
+Then strangers send garbage or read nothing, and the game continues. Prints the latency of a round trip through the
+MOOSDB beside that of bare TCP. Exits with an error at the first failed check.
 """
 
 import contextlib
@@ -28,7 +28,7 @@ from pymoos2.dtos.contacts.NodeRecord import NodeRecord
 LIMIT_S = 40.0
 PORT, SHORE_PORT = 19101, 19100
 SIM = "tcp/127.0.0.1:19102"
-# Where this listens as pShare, and where the bridge does.
+# The ports on which this script listens as pShare, and the bridge listens.
 SHARE, SHARE_BRIDGE = ("127.0.0.1", 19103), ("127.0.0.1", 19104)
 ROUND_TRIPS = 2000
 # The red boat waits on blue's side, 20 m in front of the blue one.
@@ -187,7 +187,7 @@ def drive(boat):
     boat.wait("position and reports arrive", lambda: {"NAV_X", "NAV_Y", "NODE_REPORT", "TAGGED"} <= boat.values.keys())
     own, other = reports(boat, "NODE_REPORT_LOCAL")["blue_one"], reports(boat, "NODE_REPORT")["red_one"]
     check((own.group, other.group) == ("blue", "red"), "reports name the teams")
-    check(math.hypot(own.x - boat.values["NAV_X"], own.y - boat.values["NAV_Y"]) < 2, "the own report agrees with NAV_X and NAV_Y")
+    check(math.hypot(own.x - boat.values["NAV_X"], own.y - boat.values["NAV_Y"]) < 2, "its own report agrees with NAV_X and NAV_Y")
     check(abs(own.lat) > 1 and abs(own.lon) > 1, "reports have latitude and longitude")
     check((boat.values["TAGGED"], boat.values["HAS_FLAG"]) == ("false", "false"), "the boat is free")
     check("label=red" in boat.values["FLAG_SUMMARY"] and boat.values["BLUE_SCORES"] == 0, "flags and score are known")

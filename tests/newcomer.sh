@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What somebody does who has the program alone, in an empty folder: `tests/newcomer.sh PATH/OF/squall`. Says what failed, and ends with 1.
+# What a newcomer does who has only the program, in an empty folder: `tests/newcomer.sh PATH/OF/squall`. On failure,
+# prints what failed and exits with 1.
 set -euo pipefail
 program=$(realpath "$1")
 folder=$(mktemp -d)
@@ -9,7 +10,7 @@ ln -s "$program" "$folder/bin/squall"
 export PATH="$folder/bin:$PATH" XDG_RUNTIME_DIR="$folder"
 cd "$folder/empty"
 
-# Runs a command, and shows what it said if it fails or if that lacks a text.
+# Runs a command, and shows its output if it fails or its output lacks a text.
 expect() {
     local text=$1 said
     shift
@@ -19,7 +20,7 @@ expect() {
     fi
 }
 
-# The same of a command that is to fail.
+# The same for a command that must fail.
 refuse() {
     local text=$1 said
     shift
@@ -47,7 +48,7 @@ expect "scenarios/strategies/mine.toml" squall new strategy mine
 expect "valid strategy" squall check scenarios/strategies/mine.toml
 expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-record
 
-# Played again when it is saved, with a mistake and without.
+# Played again each time the file is saved, with a mistake and without.
 squall run surveyor_2v2 --blue mine --in-process --no-record --watch-files >watched.txt 2>&1 &
 watching=$!
 # Waits until this many lines of the output contain a text.
@@ -68,7 +69,7 @@ cp whole.toml scenarios/strategies/mine.toml
 heard 2 "after 600 s"
 kill -TERM $watching
 wait $watching || [[ $? -eq 130 ]]
-refuse "the file scenarios/strategies/mine.toml exists already" squall new strategy mine
+refuse "the file scenarios/strategies/mine.toml already exists" squall new strategy mine
 for kind in boat sea game sweep training tournament; do
     expect "created scenarios/$kind" squall new "$kind" mine
 done

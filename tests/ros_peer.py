@@ -1,9 +1,9 @@
-"""The ROS 2 bridge against zenoh-ros2-sdk and rosbags, which know ROS 2's types and rmw_zenoh's keys without ROS 2.
+"""The ROS 2 bridge against zenoh-ros2-sdk and rosbags, which implement ROS 2's types and rmw_zenoh's keys without ROS 2.
 
     ros_peer.py PATH/OF/squall
 
-Plays a game in real time, shows it to ROS 2, and is the other side: lists topics, receives, drives a boat, calls services,
-sends nonsense, stalls, and kills the bridge. Ends with an error at the first thing that is not as it should be.
+Plays a game in real time, exposes it to ROS 2, and acts as the other side: lists topics, receives, drives a boat, calls
+services, sends invalid messages, stalls, and kills the bridge. Exits with an error at the first failed check.
 """
 
 import math
@@ -251,7 +251,7 @@ def nonsense(types, port, publisher, classes, inboxes):
     for service in SERVICES:
         key = next(t for t in _query_liveliness(ZenohSession.get_instance(), 0, "SS", 1.0) if t["qualified_name"].endswith(service))
         selector = f"0/squall/{service}/{key['dds_type']}/{key['type_hash']}"
-        check(f"{service} does not answer a request without attachment",
+        check(f"{service} does not reply to a request without an attachment",
               not [r for r in session.get(selector, payload=b"junk", timeout=0.3) if r.ok])
 
 
@@ -392,7 +392,7 @@ def main():
             for child in children:
                 child.kill()
                 child.wait()
-    print("all as it should be")
+    print("all ok")
     os._exit(0)  # the SDK's session would wait for a router that is gone
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Checks what people see in a terminal: `tests/terminal.py PATH/OF/squall`.
+"""Checks output as seen in a terminal: `tests/terminal.py PATH/OF/squall`.
 
 Help and lists fit 80 and 120 columns, progress lines fit 40 columns and are cleared, and the shells that are installed
-complete commands and names. Ends with 1 if something is wrong.
+complete commands and names. Exits with 1 if a check fails.
 """
 
 import fcntl
@@ -46,7 +46,7 @@ def shown(command, columns, folder, keys=b"", wait_s=60, until=None):
 
 
 def lines(text):
-    """The lines as they finally stand on the screen, and all states of each line."""
+    """The final lines on the screen, and all states of each line."""
     text = re.sub(r"\x1b\[[\d;]*m", "", text).replace("\r\n", "\n")
     states = [re.split(r"\r\x1b\[K|\r", line) for line in text.split("\n")]
     return [state[-1] for state in states], [one for state in states for one in state]
@@ -79,7 +79,7 @@ SHELLS = {
     "zsh": (["zsh", "-f", "-i"], "autoload -U compinit && compinit -D && source <(squall completions zsh)"),
     "fish": (["fish", "--no-config", "-i"], "squall completions fish | source"),
 }
-# What is typed, and a candidate that only the right kind of name has.
+# The typed text, and a candidate that only the right kind of name has.
 COMPLETED = {
     "squall tourn": "tournament",
     "squall run strategy_4_v": "strategy_4_vs_3",

@@ -27,8 +27,8 @@ enum Control {
     Helm(Box<HelmMind>, Option<Teacher>),
 }
 
-/// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's
-/// own serve as a demonstration.
+/// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's own actions serve as
+/// a demonstration.
 #[derive(Clone)]
 struct Teacher {
     /// The option that each mode corresponds to, by mode index.
@@ -47,7 +47,7 @@ pub struct Spaces {
     pub action: ActionSpace,
 }
 
-/// A mind whose decisions are made outside.
+/// A mind whose decisions are made externally.
 #[derive(Clone)]
 pub struct Pilot {
     control: Control,
@@ -62,8 +62,7 @@ impl Pilot {
     /// Actions become orders directly. A tagged boat is steered home regardless, because it can do
     /// nothing else.
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
-        // With the drift estimated, which is part of the observation even if nothing compensates
-        // for it.
+        // The drift is estimated because it is part of the observation, even if nothing compensates for it.
         let situation = Situation::new(scenario, vehicle, role_of(scenario, vehicle), true);
         Pilot::new(Control::Direct(Box::new(situation)), spaces)
     }
@@ -81,8 +80,8 @@ impl Pilot {
         )
     }
 
-    /// The strategy's program for this boat plays. [`Pilot::taught`] returns the action that a
-    /// policy would have had to choose. `options` maps each mode path to its option.
+    /// Lets the strategy's program control this boat. [`Pilot::taught`] returns the action that a policy would have had
+    /// to choose to match it. `options` maps each mode path to its option.
     pub fn by_teacher(
         scenario: &Scenario,
         vehicle: VehicleId,
@@ -115,7 +114,7 @@ impl Pilot {
         }
     }
 
-    /// The same pilot, with decisions made by a model: its likeliest actions, or drawn ones.
+    /// The same pilot, with decisions made by a model: its most likely actions, or sampled ones.
     pub fn by_model(mut self, model: PolicyModel, is_sampled: bool) -> Pilot {
         self.policy = Some(BoardPolicy::new(model, is_sampled));
         self
@@ -149,7 +148,7 @@ impl Pilot {
         }
     }
 
-    /// Takes in the picture for the next decision. Returns the observation.
+    /// Processes the picture for the next decision. Returns the observation.
     pub fn observe(&mut self, picture: &Picture) -> &[f32] {
         self.control.preview(picture);
         if let Control::Helm(_, Some(teacher)) = &mut self.control {
@@ -180,7 +179,7 @@ impl Pilot {
 }
 
 impl Teacher {
-    /// Takes note of the helm's order.
+    /// Records the helm's order.
     fn see(&mut self, helm: &HelmMind, order: Order, actions: ActionSpace) {
         if std::mem::take(&mut self.is_observed) {
             self.did = match actions {
@@ -211,7 +210,7 @@ fn steered(situation: &Situation, order: Order, actions: ActionSpace) -> Option<
 }
 
 impl Control {
-    /// Takes in the picture for the next decision.
+    /// Processes the picture for the next decision.
     fn preview(&mut self, picture: &Picture) {
         match self {
             Control::Direct(situation) => situation.preview(picture),
@@ -246,7 +245,7 @@ impl Mind for Pilot {
         let situation = match &mut self.control {
             Control::Direct(situation) => situation,
             Control::Helm(helm, None) => {
-                // Valid until the next action, however long the period.
+                // Valid until the next action, regardless of the period.
                 helm.propose(Proposal {
                     at: picture.stamp.valid_ns,
                     course_rad,

@@ -15,7 +15,8 @@ use thiserror::Error;
 pub(crate) enum PolicyFault {
     /// The model was trained for another team size.
     #[error(
-        "the model takes {expected} values, but a boat of this game has {found}: it was trained for another team size"
+        "the model has {expected} inputs, but a boat in this game has {found} values: it was trained for another team \
+        size"
     )]
     Size {
         /// Number of inputs of the model.
@@ -54,7 +55,7 @@ pub(crate) enum Chosen {
 }
 
 impl BoardPolicy {
-    /// A policy that takes the likeliest action, or draws it if `is_sampled`.
+    /// A policy that takes the most likely action, or samples it if `is_sampled`.
     pub(crate) fn new(model: PolicyModel, is_sampled: bool) -> BoardPolicy {
         let network = model.network();
         BoardPolicy {
@@ -106,7 +107,7 @@ impl BoardPolicy {
         let output = self.network.output(self.model.output());
         let likeliest = action_of(&self.model, output)?;
         let action = if self.is_sampled {
-            // Of its own for each boat: mates with the same network draw different actions.
+            // A separate stream for each boat: mates with the same network draw different actions.
             let me = situation.model.me;
             let noise = Noise::new(situation.model.seed, &format!("policy/{}", me.index()));
             Action::drawn(output, noise.unit(self.decisions))
@@ -147,10 +148,10 @@ impl Chosen {
     }
 }
 
-/// Converts a network output to an action: the likeliest of discrete actions.
+/// Converts a network output to an action: the most likely discrete action.
 fn action_of(model: &PolicyModel, output: &[f32]) -> Result<Action, PolicyFault> {
-    // Checked on each output: a network may overflow on inputs outside its training range, and the
-    // likeliest action of NaN outputs would be the first.
+    // Checked on each output: a network may overflow on inputs outside its training range, and the most likely action
+    // of NaN outputs would be the first.
     if !output.iter().all(|number| number.is_finite()) {
         return Err(PolicyFault::NotFinite);
     }

@@ -8,7 +8,7 @@ use scenario::Scenario;
 use scenario::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
 use std::collections::BTreeSet;
 
-/// Warnings about a valid game: what each boat's role demands that the boat cannot do.
+/// Warnings about a valid game: what each boat's role requires but the boat cannot do.
 ///
 /// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once for the
 /// next one. If that lies inside this turning circle by more than the capture radius, the boat

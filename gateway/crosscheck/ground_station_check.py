@@ -1,8 +1,8 @@
-"""The emulated ArduPilot boat against dronekit and MAVProxy, unmodified, as people drive a Rover with them.
+"""The emulated ArduPilot boat against dronekit and MAVProxy, unmodified, used as for driving a Rover.
 
     ground_station_check.py PATH/OF/squall
 
-Ends with an error at the first thing that is not as it should be.
+Exits with an error at the first failed check.
 """
 
 import collections
@@ -46,7 +46,7 @@ def drive_with_dronekit(port):
     boat = dronekit.connect(f"tcp:127.0.0.1:{port}", wait_ready=True, timeout=LIMIT_S)
     here = lambda: boat.location.global_relative_frame
     wait_until("dronekit finds it armable", lambda: boat.is_armable)
-    wait_until("it tells its version", lambda: (boat.version.major, boat.version.minor) == (4, 5))
+    wait_until("it reports its version", lambda: (boat.version.major, boat.version.minor) == (4, 5))
     boat.parameters["WP_SPEED"] = 1.5
     check(boat.parameters["WP_SPEED"] == 1.5, "a parameter is set")
     boat.mode = dronekit.VehicleMode("GUIDED")
@@ -55,18 +55,18 @@ def drive_with_dronekit(port):
     wait_until("armed", lambda: boat.armed)
     boat.commands.download()
     boat.commands.wait_ready()
-    check(distance_m(here(), boat.home_location) < 5, "its home is where it was armed")
+    check(distance_m(here(), boat.home_location) < 5, "its home is the position where it was armed")
     goal = north_of(here(), 15)
     boat.simple_goto(goal, groundspeed=1.0)
     wait_until("simple_goto arrives", lambda: distance_m(here(), goal) < 4, 60)
-    check(boat.groundspeed < 1.3, f"not faster than asked for: {boat.groundspeed} m/s")
+    check(boat.groundspeed < 1.3, f"not faster than requested: {boat.groundspeed} m/s")
     commands = boat.commands
     commands.clear()
     for metres in (-10, -20):
         place = north_of(here(), metres)
         commands.add(dronekit.Command(0, 0, 0, 3, 16, 0, 1, 0, 0, 0, 0, place.lat, place.lon, 0))
     commands.upload()
-    wait_until("the mission is there", lambda: reload(commands) == 2)
+    wait_until("the boat has the mission", lambda: reload(commands) == 2)
     boat.mode = dronekit.VehicleMode("AUTO")
     wait_until("AUTO", lambda: boat.mode.name == "AUTO" and commands.next == 1)
     wait_until("the second waypoint is next", lambda: commands.next == 2, 60)
@@ -80,14 +80,14 @@ def drive_with_dronekit(port):
 
 
 def reload(commands):
-    """How many waypoints the boat has."""
+    """The number of the boat's waypoints."""
     commands.download()
     commands.wait_ready()
     return commands.count
 
 
 class MavProxy:
-    """MAVProxy, and what it prints."""
+    """MAVProxy and its output."""
 
     def __init__(self, port, folder):
         self.output = open(os.path.join(folder, "output"), "w+", encoding="utf-8")
@@ -101,7 +101,7 @@ class MavProxy:
             return file.read()
 
     def type(self, line, words=None):
-        """A command, and the words that it then prints."""
+        """A command, and the words that MAVProxy prints in reply."""
         before = len(self.printed())
         self.process.stdin.write(line + "\n")
         self.process.stdin.flush()
@@ -125,7 +125,7 @@ def drive_with_mavproxy(port, observer, folder):
         return wait_for(observer, "where it is", "GLOBAL_POSITION_INT")
 
     def moves(line, north_m, east_m, seconds, times=1):
-        """Types a command so often within these seconds; the boat then is where that leads."""
+        """Repeats a command for this many seconds, after which the boat has the resulting state."""
         before = at()
         for _ in range(times):
             proxy.type(line)
@@ -148,13 +148,13 @@ def drive_with_mavproxy(port, observer, folder):
         moves("velocity 1 0 0", 12, 0, 14, times=14)
         moves("position -15 0 0", -15, 0, 40)
         proxy.type("velocity 1 0 0")
-        wait_until("forgotten set-points are said", lambda: "target not received" in proxy.printed())
+        wait_until("expired set-points are reported", lambda: "target not received" in proxy.printed())
         with open(os.path.join(folder, "mission.txt"), "w", encoding="utf-8") as file:
             file.write("QGC WPL 110\n")
             for seq in range(3):
                 file.write(f"{seq}\t0\t3\t16\t0\t0\t0\t0\t{start.lat * 1e-7 + seq * 1e-4:.7f}\t{start.lon * 1e-7:.7f}\t0\t1\n")
         proxy.type("wp load mission.txt", "Loaded 3 waypoints")
-        wait_until("the mission is taken", lambda: "Flight plan received" in proxy.printed() or "Sent all" in proxy.printed())
+        wait_until("the mission is accepted", lambda: "Flight plan received" in proxy.printed() or "Sent all" in proxy.printed())
         proxy.type("wp list", "Saved")
         proxy.type("wp set 2")
         wait_for(observer, "waypoint 2 is next", "MISSION_CURRENT", lambda current: current.seq == 2)

@@ -1,10 +1,10 @@
-"""The emulated boat and the gateway against pymavlink, the package that most ground stations for ArduPilot are written with.
+"""The emulated boat and the gateway against pymavlink, the package used by most ground stations for ArduPilot.
 
     pymavlink_check.py PATH/OF/squall
 
-First pymavlink drives the emulated boat over UDP and TCP as a ground station does; then it plays a minimal boat, which the gateway is to
-stop, and one that takes set-points as ArduPilot's Rover does, which is to go south. Ends with an error at the first thing that is not as
-it should be.
+First, pymavlink drives the emulated boat over UDP and TCP, as a ground station does. It then emulates a minimal boat,
+which the gateway must stop, and one that interprets set-points like ArduPilot's Rover, which must go south. Exits with
+an error at the first failed check.
 """
 
 import math
@@ -24,9 +24,9 @@ LIMIT_S = 30.0
 CONFIG = os.path.abspath(os.path.join(os.path.dirname(__file__), "../../scenarios/gateways/blueboat.toml"))
 HOLD, LOITER, AUTO, RTL, GUIDED, MANUAL = 4, 5, 10, 11, 15, 0
 ARMED = mav.MAV_MODE_FLAG_SAFETY_ARMED
-# A velocity alone, and with the yaw that Rover then takes for a reason to look at the sign of the northward velocity.
+# Only a velocity, and one with a yaw, which makes Rover use the sign of the northward velocity.
 VELOCITY, VELOCITY_AND_YAW = 0b110111100111, 0b100111100111
-# A game on a field that lies south of where the boat starts.
+# A game on a field that lies south of the boat's start position.
 FIELD = """datum = { lat_deg = 41.35480, lon_deg = -74.0551 }
 corner = [0, 0]
 along_deg = 180
@@ -52,7 +52,7 @@ M_PER_DEG = 111_200
 
 
 class Processes:
-    """Processes of the program, which end with this."""
+    """Processes of the program, which are ended on exit."""
 
     def __init__(self, squall):
         self.squall = squall
@@ -78,7 +78,7 @@ def check(condition, what):
 
 
 def wait_for(link, what, kind, is_it=lambda message: True, limit_s=LIMIT_S):
-    """The first message of a kind for which something is so."""
+    """The first message of a kind that satisfies a condition."""
     end = time.monotonic() + limit_s
     while time.monotonic() < end:
         message = link.recv_match(type=kind, blocking=True, timeout=0.5)
@@ -108,7 +108,7 @@ def drive(link, seconds, send):
         send()
         message = link.recv_match(type="GLOBAL_POSITION_INT", blocking=True, timeout=0.2)
         position = message or position
-    check(position is not None, "it tells where it is")
+    check(position is not None, "it reports its position")
     return position
 
 
@@ -120,10 +120,10 @@ def drive_emulated_boat(link):
     while len(names) < 11:
         value = wait_for(link, "a parameter", "PARAM_VALUE")
         names.add(value.param_id)
-    check({"SYSID_MYGCS", "FS_GCS_TIMEOUT", "WP_SPEED"} <= names, "parameters by their real names")
+    check({"SYSID_MYGCS", "FS_GCS_TIMEOUT", "WP_SPEED"} <= names, "parameters with their real names")
     for message in (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE):
         command(link, f"the interval of {message}", mav.MAV_CMD_SET_MESSAGE_INTERVAL, message, 100_000)
-    command(link, "a command that it does not have", mav.MAV_CMD_NAV_TAKEOFF, result=mav.MAV_RESULT_UNSUPPORTED)
+    command(link, "an unsupported command", mav.MAV_CMD_NAV_TAKEOFF, result=mav.MAV_RESULT_UNSUPPORTED)
     link.mav.set_mode_send(1, mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, GUIDED)
     wait_for(link, "GUIDED", "HEARTBEAT", heartbeat_of(GUIDED, False))
     command(link, "arming", mav.MAV_CMD_COMPONENT_ARM_DISARM, 1)
@@ -154,7 +154,8 @@ def drive_emulated_boat(link):
     attitude = wait_for(link, "its rate of turn", "ATTITUDE")
     check(attitude.yawspeed > 0.05, f"it turns to starboard, {attitude.yawspeed:.2f} rad/s")
     drive(link, 1.0, to_the_south)
-    # It forgets the set-point after three seconds, and then keeps its station as Rover's boats do: it has to turn back for that.
+    # It drops the set-point after three seconds and then keeps station, as Rover's boats do: it has to turn back for
+    # that.
     idle = wait_for(link, "without set-points it stops", "GLOBAL_POSITION_INT", lambda at: math.hypot(at.vx, at.vy) < 20, limit_s=60.0)
     upload_mission(link, idle)
     command(link, "HOLD", mav.MAV_CMD_DO_SET_MODE, 1, HOLD)
@@ -165,11 +166,11 @@ def drive_emulated_boat(link):
 def upload_mission(link, here):
     link.mav.mission_count_send(1, 1, 3)
     for seq in range(3):
-        request = wait_for(link, f"it asks for item {seq}", ["MISSION_REQUEST_INT", "MISSION_REQUEST"])
+        request = wait_for(link, f"it requests item {seq}", ["MISSION_REQUEST_INT", "MISSION_REQUEST"])
         check(request.seq == seq, f"item {request.seq}")
         link.mav.mission_item_int_send(1, 1, seq, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_CMD_NAV_WAYPOINT, 0, 1, 0, 0, 0, 0,
                                        here.lat + 100 * seq, here.lon, 0)
-    ack = wait_for(link, "it takes the mission", "MISSION_ACK")
+    ack = wait_for(link, "it accepts the mission", "MISSION_ACK")
     check(ack.type == mav.MAV_MISSION_ACCEPTED, "the mission")
     command(link, "AUTO", mav.MAV_CMD_DO_SET_MODE, 1, AUTO)
     wait_for(link, "AUTO", "HEARTBEAT", heartbeat_of(AUTO, True))
@@ -215,7 +216,7 @@ class Boat:
         return self.sent
 
     def tell(self, codec):
-        """What it tells beside its heartbeat."""
+        """Its telemetry besides the heartbeat."""
 
     def obey(self, message):
         if message.get_type() != "COMMAND_LONG":
@@ -233,23 +234,23 @@ def play_boat(processes):
                               "--link", f"tcp://127.0.0.1:{boat.port}")
     is_beat = lambda message: message.get_type() == "HEARTBEAT"
     sent = boat.serve(LIMIT_S, lambda boat: (boat.mode, boat.armed) == (HOLD, False) and any(map(is_beat, boat.sent)))
-    check((boat.mode, boat.armed) == (HOLD, False), "a boat that is in GUIDED is put into HOLD and disarmed")
+    check((boat.mode, boat.armed) == (HOLD, False), "a boat in GUIDED is put into HOLD and disarmed")
     beats = [message for message in sent if is_beat(message)]
     check(beats and beats[0].type == mav.MAV_TYPE_GCS and beats[0].autopilot == mav.MAV_AUTOPILOT_INVALID, "its heartbeat")
-    check(beats[0].base_mode == 0, "which says nothing of arms")
-    check(beats[0].get_srcSystem() == 255 and beats[0].get_srcComponent() == 190, "as the ground station that it is configured as")
+    check(beats[0].base_mode == 0, "without an arming flag")
+    check(beats[0].get_srcSystem() == 255 and beats[0].get_srcComponent() == 190, "with the configured system number")
     intervals = {int(message.param1) for message in sent if message.get_type() == "COMMAND_LONG"
                  and message.command == mav.MAV_CMD_SET_MESSAGE_INTERVAL}
-    check({0, 24, 30, 33} <= intervals, f"it asks for what it needs: {sorted(intervals)}")
+    check({0, 24, 30, 33} <= intervals, f"it requests the messages that it needs: {sorted(intervals)}")
     gateway.send_signal(signal.SIGTERM)
     sent += boat.serve(LIMIT_S, lambda boat: False)
     zeros = [message for message in sent if message.get_type() == "SET_ATTITUDE_TARGET"]
     zero = lambda message: (message.thrust, message.body_yaw_rate, message.type_mask) == (0.0, 0.0, 0b10000011)
-    check(len(zeros) >= 3 and all(zero(message) for message in zeros), "its last words are set-points of zero, and all others are")
+    check(len(zeros) >= 3 and all(zero(message) for message in zeros), "its last set-points are zero, and so are all others")
 
 
 class Rover(Boat):
-    """A boat that takes velocities in GUIDED as Rover's handle_set_position_target_local_ned does."""
+    """A boat that interprets velocities in GUIDED like Rover's handle_set_position_target_local_ned."""
 
     def __init__(self):
         super().__init__()
@@ -271,7 +272,7 @@ class Rover(Boat):
         self.target = (message.yaw if has_yaw else math.atan2(message.vy, message.vx), sign * speed)
 
     def tell(self, codec):
-        """Moves on, and tells ten times a second where it is."""
+        """Moves, and reports its position ten times a second."""
         now = time.monotonic()
         step, self.moved = now - self.moved, now
         heading, speed = self.target if self.armed and self.mode == GUIDED and self.target else (self.heading, 0.0)
@@ -304,8 +305,8 @@ def play_rover(processes):
         processes.start("gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", game, "--config", CONFIG,
                         "--link", f"tcp://127.0.0.1:{rover.port}", "--without-preflight", "Ada", "--arm")
         rover.serve(LIMIT_S, lambda rover: rover.north_m < -10)
-    check(rover.north_m < -10, f"a boat with Rover's rule goes south as it is ordered: {rover.north_m:.0f} m to the north")
-    check(set(rover.masks) == {VELOCITY}, f"it is sent velocities alone: {sorted(set(rover.masks))}")
+    check(rover.north_m < -10, f"a boat with Rover's rule goes south as ordered: {rover.north_m:.0f} m to the north")
+    check(set(rover.masks) == {VELOCITY}, f"it is sent only velocities: {sorted(set(rover.masks))}")
 
 
 def main(squall):
@@ -315,13 +316,13 @@ def main(squall):
     try:
         game = f"water{os.getpid()}"
         processes.start("sim", "mixed_2v2", "--afloat", "blue_one", "--pace", "realtime", "--game", game)
-        print("pymavlink drives the emulated boat over UDP, as QGroundControl")
+        print("pymavlink drives the emulated boat over UDP, like QGroundControl")
         processes.start("gateway", "emulate", "--protocol", "mavlink", "--game", game, "--vehicle", "blue_one",
                         "--listen", "tcp://127.0.0.1:0", "--ground-station", f"udp://127.0.0.1:{port}")
         drive_emulated_boat(station)
-        print("pymavlink plays a boat to the gateway over TCP")
+        print("pymavlink emulates a boat for the gateway over TCP")
         play_boat(processes)
-        print("pymavlink plays a boat with Rover's rule, which is ordered to the south")
+        print("pymavlink emulates a boat with Rover's rule, which is ordered south")
         play_rover(processes)
     finally:
         processes.end()

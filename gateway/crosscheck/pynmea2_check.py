@@ -1,7 +1,7 @@
 """Our NMEA codec against pynmea2, both ways: `pynmea2_check.py path/to/peer` (the example of this crate).
 
-1. pynmea2 reads what we write, and finds the same values.
-2. We read what pynmea2 makes of those values when it renders them by itself, and of sentences put together here.
+1. pynmea2 reads our sentences and finds the same values.
+2. We read the sentences that pynmea2 renders from those values, and sentences assembled here.
 """
 
 import random
@@ -10,7 +10,7 @@ import sys
 
 import pynmea2
 
-# What stands for a value of ours on the wire.
+# The representation of our values on the wire.
 MODES = "Standby Thruster Heading Speed StationKeep RiverNav Waypoint Autopilot CompassCalibration GoToErp Depth " \
     "GravityVector FileDownload BootLoader"
 WORDS = {
@@ -18,7 +18,7 @@ WORDS = {
     "Primary": "1", "Secondary": "2", "PrimaryBackup": "3", "Rc": "5", "ObstacleAvoidance": "6",
     "None": "",
 }
-# Values of ours that pynmea2 does not have, and parts of others.
+# Our values that pynmea2 lacks, and parts of others.
 OURS = {"", "talker", "at", "with_mode", "heave_m", "year", "month", "day"}
 
 
@@ -45,7 +45,7 @@ def date_text(date):
 
 
 def proprietary(msg):
-    """The values of a PSEAx: pynmea2 has the letter and the fields, and no names."""
+    """The values of a PSEAx: pynmea2 has the letter and the fields, but no names."""
     kind, *fields = msg.data
     names = {
         "C": "mode heading_deg thrust difference words",
@@ -82,7 +82,7 @@ READERS = {
     "WPL": lambda m: {**place(m), "index": m.waypoint_id},
 }
 
-# Half of the last digit that we write.
+# Half a unit in the last digit that we write.
 TOLERANCE = {"lat_deg": 5.01e-5 / 60, "lon_deg": 5.01e-5 / 60, "time": 0.001}
 HUNDREDTHS = {
     "hdop", "speed_kn", "speed_km_h", "accel_ahead_g", "accel_starboard_g", "accel_down_g", "yaw_rate_deg_s",
@@ -121,7 +121,7 @@ def compare(ours, theirs, wire):
 
 
 def pairs(text):
-    """The values of a sentence of ours, as they stand on the wire."""
+    """The values of one of our sentences, as on the wire."""
     known = dict(pair.split("=", 1) for pair in text.split("\t"))
     if known.get("at") == "None":
         known["lat_deg"] = known["lon_deg"] = "None"
@@ -139,7 +139,7 @@ def read_back(peer, wires):
 
 
 def foreign(dice):
-    """Sentences that pynmea2 makes from values, in other widths than ours."""
+    """Sentences that pynmea2 renders from values, with field widths other than ours."""
     def number(low, high, places):
         return "" if dice.random() < 0.1 else f"{dice.uniform(low, high):.{places}f}"
 
@@ -169,7 +169,7 @@ def main(peer):
         kind = wire[1:6] if wire.startswith("$P") else wire[3:6]
         kinds[kind] = kinds.get(kind, 0) + 1
     assert len(kinds) == 13, sorted(kinds)
-    print(f"pynmea2 reads what we write: {sum(kinds.values())} sentences of {len(kinds)} kinds")
+    print(f"pynmea2 reads our sentences: {sum(kinds.values())} sentences of {len(kinds)} kinds")
 
     seed = 20261120
     dice = random.Random(seed)
@@ -178,7 +178,7 @@ def main(peer):
     for (wire, values), answer in zip(rendered, read_back(peer, [wire for wire, _ in rendered])):
         assert "=" in answer, f"{wire}: {answer}"
         compare(pairs(answer), values, wire)
-    print(f"we read what pynmea2 renders: {len(rendered)} sentences (seed {seed})")
+    print(f"we read pynmea2's sentences: {len(rendered)} sentences (seed {seed})")
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ const RUNS_MIN: usize = 6;
 /// Minimum scatter of the runs' velocities, m/s, because a few may agree by chance.
 const SCATTER_MIN_M_S: f64 = 0.15;
 /// An offset is a fault if it exceeds this angle, rad, by this many standard deviations:
-/// consecutive runs are alike. In a simulated day in a gale (`tests/gale`) 4.5 were too few.
+/// consecutive runs are correlated. In a simulated day in a gale (`tests/gale`), 4.5 were too few.
 const OFFSET_MAX_RAD: f64 = 0.25;
 const SIGMAS: f64 = 5.0;
 /// Maximum length of the mean of all headings as unit vectors: they are about 60 degrees apart.
@@ -44,7 +44,7 @@ const SHARE_MIN: f64 = 0.2;
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
     count: f64,
-    /// Where the bow points.
+    /// Direction of the bow.
     ahead: Ned,
     /// The ordered speed, along the bow, m/s.
     ordered: Ned,

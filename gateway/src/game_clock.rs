@@ -31,7 +31,7 @@ struct Joined {
 pub(crate) enum OrderTime {
     /// The order may be current.
     Plausible,
-    /// The game has not reached it, or not the picture that it answers.
+    /// The game has not reached this time, or has not sent the picture that the order answers.
     Ahead,
     /// It is from before the boat joined, or the boat has not joined.
     BeforeJoining,
@@ -46,8 +46,8 @@ impl GameClock {
         }
     }
 
-    /// Notes that the boat, which asked at our own time `asked`, has joined a game whose time was
-    /// `since` at some moment after that.
+    /// Records that the boat, which made its request at our own time `asked`, has joined a game whose time was `since`
+    /// at some moment after that.
     pub(crate) fn join(&mut self, asked: SimTime, since: SimTime) {
         // The answer was created after the request, so the game cannot be further ahead of our
         // clock than this. The answer's travel time is unknown, and only makes the bound safer.
@@ -69,7 +69,7 @@ impl GameClock {
         if stamp < joined.since {
             return OrderTime::BeforeJoining;
         }
-        // Anybody may have sent it, with any number.
+        // Anyone may have sent it, with any number.
         let difference = SimTime(stamp.0.saturating_sub(now.0));
         let known = joined.seen.unwrap_or(joined.most);
         // An order far in the future would count as newer than all later real ones, and silence the
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(
             take(100.1, 7.1, 7.2),
             OrderTime::Ahead,
-            "it answers a picture that there is not yet"
+            "it answers a picture that does not exist yet"
         );
         // Late orders, punctual ones after them, a pause of the game, and its continuation.
         for (now_s, stamp_s) in [

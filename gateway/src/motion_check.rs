@@ -17,7 +17,7 @@ const WINDOW_MIN_S: f64 = 2.0;
 /// Maximum number of positions stored: 20 a second.
 const FIXES_MAX: usize = 80;
 /// The reported speed may be lower than the speed from positions by this much, m/s, for this long,
-/// s: a fix may step by some metres.
+/// s: a fix may step by a few metres.
 // At these limits no sea, wind or step of a fix alone triggers them: a false alarm stops a boat in
 // a game.
 const SPEED_GAP_M_S: f64 = 1.2;
@@ -59,7 +59,7 @@ impl MotionCheck {
             measured.length() - reported.length() > SPEED_GAP_M_S
         });
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
-        // A fix that steps has a course of its own, so the reported velocity takes precedence.
+        // A stepping fix implies a course that is not the boat's, so the reported velocity takes precedence.
         self.take_course(
             now,
             reported.is_some(),
@@ -97,8 +97,7 @@ impl MotionCheck {
         }
     }
 
-    /// Notes that the receiver's position has jumped: older positions no longer yield the boat's
-    /// speed.
+    /// Records that the receiver's position has jumped: older positions no longer yield the boat's speed.
     pub(crate) fn jump(&mut self) {
         self.fixes.clear();
         (self.slow_since, self.course) = (None, None);
@@ -151,8 +150,7 @@ impl MotionCheck {
 mod tests {
     use super::*;
 
-    /// Sails a circle at this speed and rate of turn for 20 s, with the readings of its
-    /// instruments; returns the fault.
+    /// Drives a circle at this speed and rate of turn for 20 s, with these instrument readings; returns the fault.
     fn circle(
         speed_m_s: f64,
         turn_deg_s: f64,

@@ -123,7 +123,7 @@ impl NavEstimator {
         }
     }
 
-    /// Notes a command just sent to the boat.
+    /// Records a command just sent to the boat.
     pub(crate) fn note_order(&mut self, now: SimTime, ordered: Ordered) {
         self.known.ordered = Some((now, ordered));
         if ordered.ahead_m_s.abs() >= THRUST_FROM_M_S {

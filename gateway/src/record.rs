@@ -83,7 +83,7 @@ impl StepEncoder {
         out: &Output,
     ) -> Vec<Entry> {
         let mut entries = match input {
-            // As CDR on a topic of its own, because link bytes make up nearly all of a recording;
+            // As CDR on a separate topic, because link bytes make up nearly all of a recording;
             // JSON would be several times as long.
             Input::Bytes(bytes) => vec![self.link_bytes(at, game_now, false, bytes)],
             other => vec![json(

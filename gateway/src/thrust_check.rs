@@ -75,8 +75,8 @@ const TURN_SCATTER_MIN_RAD_S: f64 = 0.03;
 /// Minimum rate of turn, rad/s, of a healthy boat with a thrust difference of 100 %.
 const TURN_MIN_RAD_S: f64 = 0.15;
 /// A rate that is lower by this many standard deviations is a fault. In a gale the wind may hold a
-/// healthy boat for longer than a minute, or turn it the other way: the check is whether it turns
-/// more when more is ordered.
+/// healthy boat for longer than a minute, or turn it the other way: the check is whether a larger order makes it turn
+/// more.
 const SIGMAS: f64 = 5.0;
 /// Orders with a longer gap between them are not continuous, s.
 const GAP_MAX_S: f64 = 1.5;
@@ -153,7 +153,7 @@ impl Sway {
 /// Recent orders, and the boat's response.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ThrustCheck {
-    /// When the last order was noted, and the heading then, rad.
+    /// When the last order was recorded, and the heading then, rad.
     last: Option<(SimTime, f64)>,
     turn: Turn,
     way: Option<Way>,
@@ -168,8 +168,7 @@ pub(crate) struct ThrustCheck {
 }
 
 impl ThrustCheck {
-    /// Notes the present command and the boat's motion: heading, rad, and speed ahead over the
-    /// ground, m/s.
+    /// Records the current command and the boat's motion: heading, rad, and speed ahead over the ground, m/s.
     pub(crate) fn observe(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
         let Nav {
             psi_rad,

@@ -74,7 +74,7 @@ class VectorEnvironment:
     terminated: NDArray[np.bool_]
     """(rows,): whether the row's game is over."""
     truncated: NDArray[np.bool_]
-    """(rows,): whether the row's game was cut off."""
+    """(rows,): whether the row's game was truncated."""
     rows: int
     rows_per_game: int
     observation_names: list[str]
@@ -120,7 +120,7 @@ class VectorEnvironment:
         """The state of play of a game: its seed, the players, points and counts."""
 
     def finished(self) -> list[tuple[int, bool, dict[str, int]]]:
-        """The games that ended in the last step: index, whether cut off, and final state of play."""
+        """The games that ended in the last step: index, whether truncated, and final state of play."""
 
     def events(self, game: int) -> list[tuple[str, float, int | None, int | None, int | None]]:
         """The events of a game's last step: name, time in s, boat, other boat, team; as in `squall.Event`."""
@@ -129,7 +129,7 @@ class VectorEnvironment:
         """The digest of a game's state: equal digests, equal games."""
 
     def scene(self, game: int) -> Scene:
-        """A game seen from above; a game that ended in the last step as it ended."""
+        """A game seen from above; if it ended in the last step, as it was at its end."""
 
 class SweepPlan:
     """The games of a sweep. Immutable, so threads may share it."""

@@ -70,7 +70,7 @@ def parallel_step(environment: Any) -> Callable[[], None]:
 
 
 def pyquaticus_environment() -> Any:
-    """Pyquaticus's own environment with two against two, or None if it is not installed."""
+    """Pyquaticus' own environment with two against two, or None if it is not installed."""
     try:
         from pyquaticus.config import get_std_config
         from pyquaticus.envs.pyquaticus import PyQuaticusEnv

@@ -28,7 +28,7 @@ Task: TypeAlias = Callable[[Packed, int, int], list[Result]]
 PACKED_BYTES_MAX = 256 << 20
 """Maximum size of files sent to workers, bytes."""
 RETRIES = 5
-"""How often a batch is played again after its worker or machine was lost."""
+"""How often a batch is rerun after its worker or machine was lost."""
 BATCH = 50
 """Default maximum number of games per batch, for clusters of up to 2000 CPUs."""
 IN_FLIGHT = 2
@@ -69,7 +69,7 @@ class InOrder(Generic[Result]):
     """Batches that arrived early, by the index of their first game."""
 
     def put(self, begin: int, results: list[Result]) -> Iterator[tuple[int, Result]]:
-        """Takes a batch. Returns all results that can now be passed on."""
+        """Adds a batch. Returns all results that can now be passed on."""
         self.waiting[begin] = results
         while (batch := self.waiting.pop(self.due, None)) is not None:
             first, self.due = self.due, self.due + len(batch)
@@ -77,7 +77,7 @@ class InOrder(Generic[Result]):
 
 
 class Progress:
-    """Progress on standard error: one updated line on a terminal, otherwise a line from time to time."""
+    """Progress on standard error: one updated line on a terminal, otherwise an occasional line."""
 
     def __init__(self, done: int, games: int) -> None:
         self.first, self.games = done, games
@@ -123,8 +123,8 @@ def cpus_of(ray: Any) -> int:
 
 
 def batch_of(left: int, cpus: int) -> int:
-    """The number of games per batch: four batches per CPU, but none so long that losing it matters, nor so short that one driver cannot
-    hand out the tasks (about 200 per second, if a game takes 0.2 s)."""
+    """The number of games per batch: four batches per CPU, but none so large that losing it matters, nor so small that
+    one driver cannot hand out the tasks (about 200 per second, if a game takes 0.2 s)."""
     return max(1, min(left // (4 * cpus), max(BATCH, cpus // 40)))
 
 
@@ -189,8 +189,8 @@ def parser_of(module: str, description: str | None, kind: str) -> argparse.Argum
     parser = argparse.ArgumentParser(prog=f"python -m {module}", description=description)
     parser.add_argument("file", type=Path, help=f"the {kind} file")
     parser.add_argument("--games", type=int, metavar="N", help="number of games (default: key `games` of the file)")
-    parser.add_argument("--seed", type=int, metavar="N", help="first seed (default: as in the file)")
-    parser.add_argument("--batch", type=int, metavar="N", help="games per task (default: by the size of the cluster)")
+    parser.add_argument("--seed", type=int, metavar="N", help="first seed (default: the seed in the file)")
+    parser.add_argument("--batch", type=int, metavar="N", help="games per task (default: depends on the cluster)")
     parser.add_argument(
         "--address",
         metavar="ADDR",

@@ -82,7 +82,7 @@ class RewardFunction:
         self.begin()
 
     def begin(self) -> None:
-        """Notes the states and boats before the next step."""
+        """Stores the states and boats before the next step."""
         native = self._native
         self._before = native.states.copy()
         self._rows = [boat for game in range(native.rows // native.rows_per_game) for boat in native.boats(game)]

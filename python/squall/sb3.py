@@ -34,7 +34,7 @@ class VecEnv(BaseVecEnv):  # type: ignore[misc]
         return observations
 
     def step_async(self, actions: NDArray[Any]) -> None:
-        """Notes the actions for `step_wait`."""
+        """Stores the actions for `step_wait`."""
         self._actions = actions
 
     def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:

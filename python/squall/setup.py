@@ -43,7 +43,7 @@ class Options(TypedDict, total=False):
     """How long an action holds, s: a multiple of the game's own period. By default the smallest multiple from 0.5 on; None: the game's
     own period."""
     episode_max_s: float | None
-    """Time after which an episode is cut off (`truncated`), s. None (default): whole games."""
+    """Time after which an episode is truncated (`truncated`), s. None (default): whole games."""
     starts: int | None
     """The number of different starts, which repeat, so that new games are cheap. None (default): a new start for every game."""
     team: str | None
@@ -83,7 +83,7 @@ def native_environment(
     """
     unknown = options.keys() - Options.__annotations__.keys()
     if unknown:
-        raise ValueError(f"unknown option {sorted(unknown)}, expected some of {sorted(Options.__annotations__)}")
+        raise ValueError(f"unknown option {sorted(unknown)}, expected one or more of {sorted(Options.__annotations__)}")
     control, rewards = options.get("control", "direct"), options.get("rewards", "bold")
     starts = options.get("starts")
     setup: _native.Setup = {

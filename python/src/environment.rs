@@ -423,8 +423,8 @@ impl VectorEnvironment {
         }
         if self.recordings.is_some() {
             return Err(PyRuntimeError::new_err(
-                "this environment records its games in the process that it was created in: \
-                 create another one in this process",
+                "this environment records its games in the process in which it was created: create another one in \
+                this process",
             ));
         }
         let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);

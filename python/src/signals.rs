@@ -1,4 +1,4 @@
-//! Work without the interpreter's lock that Ctrl-C can end.
+//! Work done without the interpreter's lock, which Ctrl-C can end.
 
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -93,7 +93,7 @@ impl TournamentPlan {
                 .any(|i| i >= self.0.games() || records[i].of != self.0.match_at(i).0)
             {
                 return Err(PyIndexError::new_err(
-                    "the records are not the tournament's first games, in their order",
+                    "the records are not the tournament's first games in order",
                 ));
             }
             let report = Report::new(&self.0, &records);

@@ -45,7 +45,7 @@ class Shown:
 
 @pytest.fixture
 def browser(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """The addresses that a browser should open; none is opened. The page shows nothing before and after."""
+    """The addresses that a browser should open; none is opened. The page shows nothing before or after."""
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     monkeypatch.setattr(PAGE, "url", None)

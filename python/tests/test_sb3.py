@@ -13,7 +13,7 @@ import squall
 
 
 class BaseVecEnv:
-    """What `squall.sb3` uses of Stable-Baselines3's `VecEnv`."""
+    """The parts of Stable-Baselines3's `VecEnv` that `squall.sb3` uses."""
 
     def __init__(self, num_envs: int, observation_space: Any, action_space: Any) -> None:
         self.num_envs, self.observation_space, self.action_space = num_envs, observation_space, action_space

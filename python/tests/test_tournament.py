@@ -41,7 +41,7 @@ def by_program(program: str, tournament: Path, folder: Path) -> tuple[str, dict[
 
 
 def same(one: dict[str, object], other: dict[str, object]) -> None:
-    """Compares the games of both reports, whatever played them and at any speed."""
+    """Compares the games of both reports, regardless of what played them and how fast."""
     for report in (one, other):
         del report["rate"], report["commit"]
     assert one == other
@@ -64,7 +64,7 @@ def test_what_is_wrong_is_told(tournament: Path) -> None:
     assert (plan.name, plan.games) == ("tiny", 12)
     records = plan.records(0, 2)
     for wrong in (records[1:], [*records, *records]):
-        with pytest.raises(IndexError, match="in their order"):
+        with pytest.raises(IndexError, match="in order"):
             plan.report(wrong)
     with pytest.raises(ValueError, match="a record cannot be read"):
         plan.report(["{}"])

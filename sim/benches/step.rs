@@ -19,7 +19,7 @@ fn shipped(game: &str) -> Scenario {
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// All boats circle at speed, each differently, so that every part of the step has work.
+/// All boats circle at speed, each differently, so that every part of the step has work to do.
 fn circling(world: &World, tick: u64) -> Vec<Order> {
     let count = world.state().boats.len();
     let heading_rad = |i: usize| (tick as f64 * 0.02 + i as f64) % 6.0 - 3.0;

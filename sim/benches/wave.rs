@@ -22,7 +22,7 @@ fn waves(components: u32) -> Waves {
     }
 }
 
-/// Poses all over a field, on all headings, as of a fleet.
+/// Poses all over a field, on all headings, like those of a fleet.
 fn poses() -> Vec<Pose> {
     let pose = |i: u32| Pose {
         at: Ned {

@@ -1,5 +1,4 @@
-//! A game without consequences by the referee, for `squall sim --afloat`: some of its boats afloat
-//! in its sea.
+//! A game without a referee, for `squall sim --afloat`: some of its boats afloat in its sea.
 //!
 //! Emulated boats float here while their game treats them as real. Sea, boats and sensors are those
 //! of the game. Tags, flags, limits on sharing and radio have no effect.
@@ -13,7 +12,7 @@ use thiserror::Error;
 /// The longest duration that a scenario file allows.
 const DAY_S: f64 = 86_400.0;
 
-/// Why the boats cannot be set afloat.
+/// Why the boats cannot be put in the water.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotAfloat {
     /// A boat is not in the game.
@@ -33,7 +32,7 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     for name in names {
         scenario.vehicle_named(name)?;
     }
-    // With all boats of the game, so that those afloat start where the game expects them.
+    // Includes all boats of the game, so that those afloat start where the game expects them.
     let poses = spawn::start_positions(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
@@ -134,7 +133,7 @@ mod tests {
         assert!(
             error
                 .to_string()
-                .contains("\"green_one\"; there are blue_one, blue_two, red_one, red_two"),
+                .contains("\"green_one\"; the vehicles are: blue_one, blue_two, red_one, red_two"),
             "{error}"
         );
     }

@@ -2,7 +2,7 @@
 //!
 //! At advance number 0, a propeller takes a torque of k_q n |n| and produces a thrust of k_t n |n|.
 //! Its power 2 pi n Q is therefore proportional to |n|³, that is, to |T|^1.5 (Fossen 2021, ch. 9).
-//! Two thrusters at the shares s of full thrust draw P = P_hotel + P_full (s_port^1.5 +
+//! Two thrusters at the fractions s of full thrust draw P = P_hotel + P_full (s_port^1.5 +
 //! s_starboard^1.5) / 2.
 
 use scenario::boat::Battery;
@@ -10,7 +10,7 @@ use scenario::boat::Battery;
 /// A battery with constants for one tick length.
 #[derive(Clone, Copy, Debug)]
 pub struct BatteryModel {
-    /// Initial charge as a share of a full battery.
+    /// Initial charge as a fraction of a full battery.
     pub(crate) charge: f64,
     sag: f64,
     /// Charge used per tick by the hotel load, and by the thrusters at full thrust.
@@ -35,7 +35,7 @@ impl BatteryModel {
         1.0 - self.sag * (1.0 - charge)
     }
 
-    /// Subtracts one tick's energy, for thrusters at these shares (0 to 1) of full thrust.
+    /// Subtracts one tick's energy, for thrusters at these fractions (0 to 1) of full thrust.
     #[inline]
     pub fn draw(&self, charge: &mut f64, shares: [f64; 2]) {
         // Not `powf`, whose last bit differs between platforms.

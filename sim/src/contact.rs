@@ -5,9 +5,9 @@
 //! tick's motion, resolves the contacts and moves the poses. Its changes of velocity are copied
 //! back.
 //!
-//! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has
-//! no memory: a snapshot needs none of its state, and boats without contact keep the same bytes
-//! whether or not the engine ran for others.
+//! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has no memory: a
+//! snapshot needs none of its state, and boats without contact have the same bytes whether or not the engine ran for
+//! others.
 
 use crate::hull::{HullModel, Planar};
 use primitives::angle::wrap_pi;
@@ -223,7 +223,7 @@ impl ContactModel {
                 displacements[b].start(),
                 shape_b,
             ) {
-                // Only the axis counts, not its sign: the mass along a line is the same both ways.
+                // Only the axis counts, not its sign: the mass along a line is the same in both directions.
                 touches.push(Touch {
                     boat: a,
                     distance_m,
@@ -289,7 +289,7 @@ impl ContactModel {
         displacements: &mut [Displacement],
         touches: &[Touch],
     ) {
-        // Rebuilding the world loses warm starting, which only boats that pile up would need.
+        // Rebuilding the world loses warm starting, which only a pile-up of boats would need.
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = self.dt_s;
@@ -418,7 +418,7 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
             bounds: Bounds::Circle(*centre, *radius_m),
         },
         Obstacle::Polygon { corners } => {
-            // A closed polyline keeps the exact shape of any polygon, with its bays.
+            // A closed polyline keeps the exact shape of any polygon, including concave parts.
             let first = corners[0];
             let count = corners.len() as u32;
             let sides = (0..count).map(|i| [i, (i + 1) % count]).collect();
@@ -470,7 +470,7 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
             .contact_pairs_with(*c)
             .any(|pair| pair.has_any_active_contact())
     });
-    // A boat without contact keeps our own motion to the last bit, not rapier's integration of it.
+    // A boat without contact keeps our own motion bit for bit, not rapier's integration of it.
     if !touched || displacement.role != ContactRole::Dynamic {
         return;
     }

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 /// The flaws of a pair of thrusters, for one tick length.
 #[derive(Clone, Debug)]
 pub(crate) struct FlawModel {
-    /// Maximum effective setting, as a share of full ahead or astern.
+    /// Maximum effective setting, as a fraction of full ahead or astern.
     pub(crate) saturation: f64,
     /// Factors on thrust ahead and astern, for port and starboard.
     gain: [(f64, f64); 2],
@@ -21,8 +21,7 @@ pub(crate) struct FlawModel {
     pub(crate) ventilation: Option<Ventilation>,
 }
 
-/// The changing state of flawed thrusters without their shafts. The default belongs to perfect
-/// ones.
+/// The changing state of flawed thrusters without their shafts. The default is that of perfect thrusters.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
     /// Settings in transit to the thrusters, oldest first; one for each tick of latency.

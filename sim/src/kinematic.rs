@@ -159,9 +159,8 @@ impl KinematicModel {
 
     /// Advances a boat by `dt_s`, with the current `drift_m_s`.
     ///
-    /// The loops steer a course. For an order of two thrusts (shares of full), thrust and rudder
-    /// are half their sum and half their difference, and the loops rest. Hold means speed 0 on the
-    /// present heading.
+    /// The loops steer a course. For an order of two thrusts (fractions of full), thrust and rudder are half their sum
+    /// and half their difference, and the loops do not run. Hold means speed 0 on the current heading.
     pub fn step(
         &self,
         state: &mut KinematicState,
@@ -217,7 +216,7 @@ impl KinematicModel {
                     .speed_loop
                     .answer(boat.speed_pid, error_m_s, boat.thrust_max, dt_s)
         };
-        // The reference clips at zero, so a point boat never goes astern to brake.
+        // The reference clips at zero, so a point boat never reverses its thrust to brake.
         state.thrust = if thrust < THRUST_MIN {
             0.0
         } else {
@@ -284,7 +283,7 @@ fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
 mod tests {
     use super::*;
 
-    /// A boat with simple numbers: thrust in per cent is speed in cm/s, without limits or losses.
+    /// A boat with simple numbers: thrust in per cent equals speed in cm/s, without limits or losses.
     fn plain() -> Kinematic {
         let none = Pid {
             p: 0.0,

@@ -1,4 +1,4 @@
-//! Numbers side by side, as in wide registers.
+//! Numbers in lanes, as in wide registers.
 //!
 //! Every operation is a plain loop over all lanes, which compiles to one instruction, or to several
 //! on narrower registers. The results have the same bits, because each lane is computed separately,

@@ -100,8 +100,7 @@ impl Model {
             .iter()
             .map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
-        // Boats without sensors keep no readings, which large fleets of perfect boats would carry
-        // for nothing.
+        // Boats without sensors keep no readings, which would be useless in large fleets of perfect boats.
         let is_sensed = plan
             .vehicles
             .iter()

@@ -1,6 +1,6 @@
 //! One step of motion, for several boats side by side.
 //!
-//! A boat's step is a long chain of dependent operations, in which a processor mostly waits. Boats
+//! A boat's step is a long chain of dependent operations, during which the processor mostly waits. Boats
 //! are independent, so eight advance together, one per lane. A lane performs the same IEEE
 //! operations whatever the other lanes and the processor, so results do not depend on the grouping.
 
@@ -8,7 +8,7 @@ use crate::hull::{HullModel, Planar};
 use crate::lanes::{Lanes, where_at_most};
 use primitives::instructions::{Instructions, Kernel};
 
-/// Boats per full row, and in the last row.
+/// Number of boats in a full row, and in the last row.
 // The four stages of a boat form one chain of dependent operations; eight chains side by side take
 // less than half the time per tick.
 const MANY: usize = 8;
@@ -21,8 +21,7 @@ pub struct Forcing<T = f64> {
     pub nu_r: Planar<T>,
     /// Force on the hull without its own reaction, at the start, half-way and at the end.
     pub tau: [Planar<T>; 3],
-    /// The water's own motion half-way (waves and eddies), which resistance feels in addition to
-    /// the boat's.
+    /// The water's own motion half-way (waves and eddies), which affects resistance in addition to the boat's motion.
     pub water: Planar<T>,
     /// Rate of change of `water`.
     pub water_rate: Planar<T>,

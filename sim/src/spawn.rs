@@ -7,7 +7,7 @@ use rules::field::Obstacle;
 use scenario::{Problems, RealBoats, Scenario, StartPosition};
 use thiserror::Error;
 
-/// Number of draws after which the field counts as full.
+/// Number of draws after which the spawn area counts as full.
 const TRIES: u32 = 10_000;
 
 /// A spawn area is full.
@@ -42,7 +42,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        // Placed boats first: drawn ones must keep clear of them, wherever they are in the file.
+        // Boats with given positions come first: drawn positions must keep clear of them, wherever they are in the
+        // file.
         if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// A thruster with constants for one tick length.
 ///
-/// A *setting* is a shaft speed in rad/s for a propeller, or a share of full ahead for a table.
+/// A *setting* is a shaft speed in rad/s for a propeller, or a fraction of full ahead for a table.
 #[derive(Clone, Debug)]
 pub struct ThrusterModel {
     curve: Curve,
@@ -26,7 +26,7 @@ pub struct ThrusterModel {
     slew: f64,
     /// Smaller commands have no effect.
     deadband: f64,
-    /// Remaining share of a difference after half a tick and after a tick.
+    /// Remaining fraction of a difference after half a tick and after a tick.
     lag: (f64, f64),
     /// Flaws of a pair of these thrusters.
     flaws: Option<Box<FlawModel>>,
@@ -140,7 +140,7 @@ impl ThrusterModel {
         }
     }
 
-    /// The setting for this share (−1 to 1) of full ahead or astern.
+    /// The setting for this fraction (−1 to 1) of full ahead or astern.
     #[inline]
     pub fn setting_of_share(&self, share: f64) -> f64 {
         share * if share > 0.0 { self.ahead } else { self.astern }
@@ -214,7 +214,7 @@ impl ThrusterModel {
         on_hull
     }
 
-    /// The magnitude of a thrust as a share of full ahead or astern.
+    /// The magnitude of a thrust as a fraction of full ahead or astern.
     #[inline]
     fn share(&self, newton: f64) -> f64 {
         newton
@@ -381,7 +381,7 @@ mod tests {
         assert_eq!(voyage(&table()), table_was);
     }
 
-    /// Forces after two minutes (both shafts have settled) at these shares of full thrust.
+    /// Forces after two minutes (both shafts have settled) at these fractions of full thrust.
     fn settled(flaws: Flaws, shares: [f64; 2]) -> Planar {
         let (model, mut state, mut shafts) = flawed(flaws);
         let settings = shares.map(|share| model.setting_of_share(share));

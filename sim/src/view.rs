@@ -161,7 +161,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The true state of a boat as in a node report: perfect sharing, as Aquaticus has ashore.
+    /// The true state of a boat as in a node report: perfect sharing, as ashore in Aquaticus.
     pub(crate) fn contact(&self, i: usize) -> Contact {
         let state = self.world.state();
         let standing = &self.standing.vehicles[i];

@@ -24,7 +24,7 @@ use scenario::{Boat, Scenario, Source};
 // Far above any boat, and far below the overflow of squares.
 const ABSURD_M_S: f64 = 1_000.0;
 
-/// Extra distance beyond the radius to which Pyquaticus sets boats back, m.
+/// Distance beyond the radius to which Pyquaticus sets boats back, m.
 const POINT_BOAT_SPARE_M: f64 = 0.1;
 
 /// Boats in water.

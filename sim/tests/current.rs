@@ -1,4 +1,4 @@
-//! The current compared with closed forms: tide, shear, eddies and a bounded wander.
+//! The current compared with closed forms: tide, shear, eddies and a bounded random walk.
 
 mod common;
 

@@ -392,7 +392,7 @@ fn boats_start_inside_of_their_areas_and_apart() {
     }
     seen.sort();
     seen.dedup();
-    assert_eq!(seen.len(), 20, "every seed gives another start");
+    assert_eq!(seen.len(), 20, "every seed gives a different start");
 }
 
 #[test]

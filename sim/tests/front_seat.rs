@@ -1,4 +1,4 @@
-//! The front seat: how well the shipped boats follow orders for course and speed.
+//! The front seat: how well the shipped boats follow course and speed orders.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! The radio link in a game: when orders are in force, losses, and boats without orders.
+//! The radio link in a game: when orders are in force, message losses, and boats without orders.
 
 mod common;
 

@@ -18,7 +18,7 @@ const EAST: Order = Order::Steer {
     speed_m_s: 2.0,
 };
 
-/// One boat a side; orders expire after a second.
+/// One boat per side; orders expire after a second.
 fn game() -> Scenario {
     Scenario {
         order_ttl_s: 1.0,

@@ -67,8 +67,8 @@ fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
 
 #[test]
 fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
-    // Full ahead from (40, 70) to the north: when it leaves, how long it stays outside, and when it
-    // is freed, with looks at every step of 0.1 s and, as in the competition, at every tenth.
+    // Full ahead from (40, 70) to the north: when it leaves, how long it remains outside, and when it is untagged, with
+    // looks at every step of 0.1 s and, as in the competition, at every tenth.
     for (boat, speed_m_s, looks_s, want_s) in [
         ("heron", 2.0, 0.0, [8.9, 8.8, 28.6]),
         ("heron", 2.0, 1.0, [9.0, 9.0, 29.0]),
@@ -256,7 +256,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
 #[test]
 fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     // Actions 0 and 8 of Pyquaticus, half a turn at full and at half speed, held from rest: x, y,
-    // speed and heading after some seconds. To port it is the mirror image.
+    // speed and heading after a few seconds. To port it is the mirror image.
     for (boat, speed_m_s, at_s, [x, y, speed, heading_deg]) in [
         (
             "heron",

@@ -20,7 +20,7 @@ fn sail(world: &mut World, order: Order, seconds: u32) -> BoatState {
     world.state().boats[0]
 }
 
-/// The share of full ahead or astern at which one thruster gives this thrust.
+/// The fraction of full ahead or astern at which one thruster gives this thrust.
 fn share(newton: f64) -> f64 {
     let scenario = alone("surveyor_m1_8", "calm");
     let Drive::Thrusters { thruster, .. } = &scenario.boats[0].drive else {

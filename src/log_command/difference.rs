@@ -114,7 +114,8 @@ fn responses(text: &mut String, width: usize, boats: &[Pair]) {
         }
     }
     *text += &format!(
-        "drift is measured from {SETTLED_S:.0} s after the order to hold; - means that the game contains no such measurement\n"
+        "drift is measured from {SETTLED_S:.0} s after the order to hold; - means that the game has no such \
+        measurement\n"
     );
 }
 

@@ -34,7 +34,7 @@ pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Resul
         ),
         file,
     ) {
-        // It is not an error if a reader closes the pipe early.
+        // A reader that closes the pipe early is not an error.
         (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => {
             Ok(Damaged::default())
         }

@@ -118,7 +118,7 @@ fn head(summary: &Summary) -> String {
         .collect();
     let end = match (&summary.winner, summary.is_cut) {
         (Some(team), _) => format!("{team} wins"),
-        (None, true) => "not decided in this recording".to_owned(),
+        (None, true) => "undecided at the end of this recording".to_owned(),
         (None, false) if summary.events.iter().any(|event| event.event == "ended") => {
             "a draw".to_owned()
         }
@@ -208,7 +208,7 @@ fn boats(boats: &[BoatStatistics]) -> String {
         add_line(
             &mut text,
             format_args!(
-                "{real}: real; their true positions are those that their gateways reported"
+                "{real}: real boats; their true positions are those reported by their gateways"
             ),
         );
     }

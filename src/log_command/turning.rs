@@ -19,7 +19,7 @@ const CURVE_COLUMNS: usize = 60;
 pub(super) fn print(args: &Args, file: &Path) -> Result<ExitCode> {
     let recording = recording_file::open(file, "play on")?;
     let past = whatif_command::past(&recording)
-        .with_context(|| format!("cannot play {} on", file.display()))?;
+        .with_context(|| format!("cannot continue {}", file.display()))?;
     let out = args
         .json
         .clone()

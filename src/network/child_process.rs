@@ -1,4 +1,4 @@
-//! Child processes of `run`: none of them outlives it.
+//! Child processes of `run`, none of which outlives it.
 
 use anyhow::{Context, Result};
 use bus::keys::Identity;
@@ -47,7 +47,7 @@ pub(crate) fn token() -> &'static Token {
     &TOKEN
 }
 
-/// Passes a command the keys for this role from a folder, if there is one. It needs no token then.
+/// Passes a command the keys for this role from a folder, if there is one. It then needs no token.
 pub(crate) fn give_keys(command: &mut Command, folder: Option<&Path>, identity: &Identity) {
     if let Some(folder) = folder {
         command
@@ -110,16 +110,16 @@ impl ChildProcess {
         Ok(receiver)
     }
 
-    /// `None` while it runs; then its error, or `Some(None)` for success.
+    /// `None` while it is running; then its error, or `Some(None)` for success.
     pub(crate) fn ended(&mut self) -> Option<Option<String>> {
         let status = self.child.try_wait().ok().flatten()?;
         Some((!status.success()).then(|| format!("{} failed: {status}", self.name)))
     }
 
-    /// Sends it a line on standard input.
+    /// Sends a line to its standard input.
     ///
     /// # Errors
-    /// If the child no longer reads it.
+    /// If the child no longer reads input.
     pub(crate) fn send(&mut self, line: &str) -> Result<()> {
         let name = &self.name;
         let mut stdin = self
@@ -129,12 +129,12 @@ impl ChildProcess {
         writeln!(stdin, "{line}").with_context(|| format!("{name} does not accept input"))
     }
 
-    /// Requests it to stop.
+    /// Asks the child to stop.
     pub(crate) fn ask_to_stop(&mut self) {
         self.stdin = None;
     }
 
-    /// Requests it to stop and waits; returns an error text if it failed.
+    /// Asks the child to stop and waits; returns an error text if it failed.
     pub(crate) fn stop(&mut self) -> Vec<String> {
         self.ask_to_stop();
         wait_for_all(std::slice::from_mut(self))
@@ -143,7 +143,7 @@ impl ChildProcess {
 
 impl Drop for ChildProcess {
     fn drop(&mut self) {
-        // A process that has already ended cannot be killed; the wait only collects it.
+        // A process that has already ended cannot be killed; the wait only reaps it.
         drop(self.child.kill());
         drop(self.child.wait());
     }

@@ -18,8 +18,8 @@ use std::time::Duration;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
-    /// Replaces real boats by emulated ones, which gateways drive over the protocol of the gateway
-    /// file; prints the gateways' final status
+    /// Replaces real boats with emulated ones, driven by gateways using the protocol that the gateway file specifies;
+    /// prints the gateways' final status
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
     /// Gateway file or name for the emulated boats [default: a Surveyor with conservative limits]
@@ -30,7 +30,7 @@ pub(crate) struct LoopArgs {
     record_gateways: Option<PathBuf>,
 }
 
-/// Upper bound of emulated boats: each has two processes.
+/// Maximum number of emulated boats: each has two processes.
 const BOATS_MAX: usize = 32;
 /// Timeout for an emulator to report its address.
 const WINDOW: Duration = Duration::from_secs(20);
@@ -67,7 +67,7 @@ impl LoopArgs {
         }
         if names.len() > BOATS_MAX {
             bail!(
-                "{} boats of this game are real, expected at most {BOATS_MAX} with --emulate",
+                "this game has {} real boats, expected at most {BOATS_MAX} with --emulate",
                 names.len()
             );
         }
@@ -135,7 +135,7 @@ impl LoopArgs {
 }
 
 impl HardwareLoop {
-    /// Stops everything, gateways first, so that they leave their boats at rest. Returns the
+    /// Stops everything, gateways first, so that their boats are left at rest. Returns the
     /// failures.
     pub(crate) fn end(mut self) -> Vec<String> {
         let badly = self.ends.iter_mut().flat_map(ChildProcess::stop).collect();

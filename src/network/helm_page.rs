@@ -4,7 +4,7 @@ use crate::helm_text::decision;
 use messages::helm::{FunctionReport, HelmReport, PolicyReport, RunState};
 use scenario::Scenario;
 
-/// How many actions of a policy are listed, the likeliest first.
+/// Number of listed actions of a policy, most likely first.
 const ACTIONS: usize = 4;
 
 /// The full report: mode, decision, and the utilities of every behaviour.
@@ -108,8 +108,8 @@ pub(super) fn line(scenario: &Scenario, report: &HelmReport) -> String {
     format!("{}\n", line.trim_end())
 }
 
-/// The table of behaviours: name, kind, run state, weight and utility; functions about contacts are
-/// listed below theirs.
+/// The table of behaviours: name, kind, run state, weight and utility; functions for contacts are listed below their
+/// behaviours.
 fn rows(scenario: &Scenario, report: &HelmReport) -> Vec<[String; 5]> {
     let mut rows = vec![["behaviour", "kind", "state", "weight", "utility"].map(str::to_owned)];
     for behaviour in &report.behaviours {

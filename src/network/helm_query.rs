@@ -33,8 +33,7 @@ pub(crate) fn report(
     Ok(Some(report))
 }
 
-/// The helm report of a vehicle that has an agent. Repeats the query if a busy link dropped the
-/// answer.
+/// The helm report of a vehicle that has an agent. Repeats the query if a busy link dropped the reply.
 pub(crate) fn report_of_agent(
     observer: &Observer,
     vehicle: VehicleId,
@@ -46,7 +45,7 @@ pub(crate) fn report_of_agent(
         if let Some(report) = report(observer, vehicle, question)? {
             return Ok(report);
         }
-        // If nothing serves this boat at all, report that before the answer's timeout.
+        // If no node serves this boat, report that before the reply times out.
         let is_answered_for = clock::since(asked) >= bus::ANSWER;
         if !is_answered_for || clock::since(start) >= SILENCE {
             bail!(

@@ -20,7 +20,7 @@ pub(crate) struct HubArgs {
     /// interfaces
     #[arg(long)]
     lan: bool,
-    /// Accepts other machines without keys: anyone on that network can see and stop the game
+    /// Accepts other machines without keys: anyone on the network can see and stop the game
     #[arg(long)]
     insecure: bool,
     /// Base zenoh configuration (JSON5), for example for access control, interfaces or buffers
@@ -98,7 +98,7 @@ pub(crate) fn own_address() -> Option<IpAddr> {
     (!address.is_loopback() && !address.is_unspecified()).then_some(address)
 }
 
-/// What users on other machines, or other users of this one, need to join and control a game.
+/// What users on other machines, or other users of this machine, need in order to join and control a game.
 pub(crate) fn token_text(token: &Token) -> String {
     format!(
         "token for agents and operators on other machines or accounts: {TOKEN_VARIABLE}={}",

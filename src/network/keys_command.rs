@@ -29,10 +29,10 @@ enum KeysCommand {
 struct NewArgs {
     /// Folder to create the keys in
     folder: PathBuf,
-    /// Creates keys for the agents of this team; repeatable
+    /// Creates keys for the agents of this team; may be repeated
     #[arg(long = "team", value_name = "NAME")]
     teams: Vec<String>,
-    /// Creates keys for the gateway of this boat, or of any boat if no name is given; repeatable
+    /// Creates keys for the gateway of this boat, or of any boat if no name is given; may be repeated
     #[arg(long = "gateway", value_name = "BOAT", num_args = 0..=1, default_missing_value = "")]
     gateways: Vec<String>,
     /// Creates keys for observers, who can also stop boats
@@ -41,7 +41,7 @@ struct NewArgs {
     /// Creates keys for operators, who control the game and its boats
     #[arg(long)]
     operator: bool,
-    /// Name or address of the sim, besides localhost; repeatable [default: this machine's name and
+    /// Name or address of the sim, besides localhost; may be repeated [default: this machine's name and
     /// address]
     #[arg(long = "host", value_name = "HOST", value_parser = host)]
     hosts: Vec<String>,
@@ -83,7 +83,7 @@ fn new(args: &NewArgs) -> Result<()> {
     identities.extend(args.operator.then_some(Identity::Operator));
     if let [Identity::Sim] = identities[..] {
         bail!(UsageError(
-            "no node could join; request keys with --team, --gateway, --observer or --operator"
+            "these keys would let no node join; add at least one of --team, --gateway, --observer and --operator"
                 .to_owned()
         ));
     }
@@ -97,7 +97,7 @@ fn new(args: &NewArgs) -> Result<()> {
         .find(|path| path.exists())
     {
         bail!(
-            "{} exists already; new keys would replace all the old ones, so choose a new folder",
+            "{} already exists; new keys would replace all the old ones, so choose a new folder",
             there.display()
         );
     }
@@ -119,7 +119,7 @@ fn new(args: &NewArgs) -> Result<()> {
 }
 
 fn named(text: &str) -> Result<Identity> {
-    let wrong = "is not a valid name, expected 1 to 48 of the characters a-z A-Z 0-9 _ -";
+    let wrong = "is not a valid name, expected 1 to 48 characters from a-z, A-Z, 0-9, _ and -";
     text.parse()
         .map_err(|_| UsageError(format!("{text:?} {wrong}")).into())
 }

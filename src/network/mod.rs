@@ -51,7 +51,7 @@ pub(crate) enum Command {
         after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447"
     )]
     Agent(agent_command::Args),
-    /// Shows a running game in the terminal, or one boat's helm.
+    /// Shows a running game, or one boat's helm, in the terminal.
     #[command(
         after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447"
     )]
@@ -77,7 +77,7 @@ pub(crate) enum Command {
         after_help = "Examples:\n  squall moos --team blue\n  squall moos --vehicle blue_one=:9001 blue_two=tcp/localhost:9002 --shore :9000"
     )]
     Moos(moos_command::Args),
-    /// Shows a running game to ROS 2 as nodes, topics and services.
+    /// Exposes a running game to ROS 2 as nodes, topics and services.
     #[command(
         after_help = "Examples:\n  squall ros bridge\n  squall ros bridge --vehicle blue_1 --operator\n  squall ros messages src/squall_msgs"
     )]
@@ -91,8 +91,7 @@ pub(crate) enum Command {
 }
 
 pub(crate) fn run(command: &Command) -> Result<ExitCode> {
-    // `run` only passes keys on: its children without keys must not get the thread settings of
-    // those with keys.
+    // `run` only passes keys on: its children without keys must not inherit the thread settings of those with keys.
     if !matches!(command, Command::Run(_) | Command::Demo(_)) {
         leaf_args::restart_with_threads_for_keys()?;
     }

@@ -14,8 +14,8 @@ use std::time::Duration;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or
-    /// NAME=IP:PORT on this port; NAME=tcp/HOST:PORT uses a running MOOSDB
+    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or NAME=IP:PORT on that port;
+    /// NAME=tcp/HOST:PORT uses a running MOOSDB
     #[arg(long, num_args = 1.., value_name = "NAME[=ADDRESS]", value_parser = boat)]
     vehicle: Vec<(String, Option<Address>)>,
     /// Connects all boats of this team, each with its own MOOSDB
@@ -27,11 +27,11 @@ pub(crate) struct Args {
     /// Shows the whole game to pMarineViewer in the MOOSDB at this address, for example :9000
     #[arg(long, value_name = "ADDRESS")]
     shore: Option<Address>,
-    /// Sends what the shoreside publishes to pShare there, for example shore.local:9300; may be
+    /// Sends what the shoreside publishes to pShare at this address, for example shore.local:9300; may be
     /// repeated
     #[arg(long, value_name = "HOST:PORT", requires = "shore")]
     pshare: Vec<String>,
-    /// Receives commands such as DEPLOY_ALL from pShare here, for example 0.0.0.0:9301
+    /// Receives commands, such as DEPLOY_ALL, from pShare at this address, for example 0.0.0.0:9301
     #[arg(long, value_name = "IP:PORT", requires = "shore", value_parser = address)]
     pshare_listen: Option<SocketAddr>,
     #[command(flatten)]
@@ -52,13 +52,13 @@ fn resolved(place: &String) -> Result<SocketAddr> {
         .with_context(|| format!("--pshare {place}, expected HOST:PORT"))?;
     found
         .next()
-        .ok_or_else(|| anyhow!("--pshare {place}: the host has no address"))
+        .ok_or_else(|| anyhow!("--pshare {place}: cannot resolve the host"))
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.vehicle.is_empty() && args.team.is_none() && args.shore.is_none() {
         return Err(UsageError(
-            "nothing to connect: use --vehicle NAME or --team TEAM for boats, --shore :9000 for \
+            "nothing to connect: use --vehicle NAME or --team TEAM for boats, or --shore :9000 for \
              pMarineViewer"
                 .to_owned(),
         )

@@ -11,7 +11,7 @@ use std::process::Command;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct PaceArgs {
-    /// Pace of the game: lockstep, realtime, or a multiple of real time such as 4x
+    /// Pace of the game: lockstep, realtime, or a multiple of real time, such as 4x
     #[arg(long, default_value = "lockstep", allow_hyphen_values = true)]
     pub(crate) pace: Pace,
     /// In lockstep: initial speed limit, as a multiple of real time; the page can change it

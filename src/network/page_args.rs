@@ -22,8 +22,8 @@ const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
 
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct PageArgs {
-    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token
-    /// is required [default: 127.0.0.1:8088, or a free port if it is taken]
+    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token is required
+    /// [default: 127.0.0.1:8088, or another free port if 8088 is taken]
     #[arg(long, value_name = "ADDRESS", value_parser = address)]
     listen: Option<SocketAddr>,
     /// Token required to pause, stop or drive from the page, but not to watch. Other users of this
@@ -36,7 +36,7 @@ pub(crate) struct PageArgs {
     /// Additional host name of the page; requires a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
-    /// Chart to draw below the field: GeoJSON, or PNG or JPEG with a world file
+    /// Chart to draw beneath the field: GeoJSON, or PNG or JPEG with a world file
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
     /// Opens the page in the browser
@@ -129,7 +129,7 @@ impl PageArgs {
         }
     }
 
-    /// Serves a page with what `put` puts there, from this path, until Ctrl-C.
+    /// Serves a page with the content that `put` provides, from this path, until Ctrl-C.
     pub(crate) fn show(
         &self,
         path: &Path,
@@ -155,7 +155,7 @@ impl PageArgs {
         }
     }
 
-    /// Passes these arguments to another process, the token where no other user can read it.
+    /// Passes these arguments to another process, and the token where no other user can read it.
     pub(crate) fn give_to(&self, command: &mut Command) {
         let listen = self
             .listen

@@ -1,5 +1,4 @@
-//! The helm reports of a replay: minds decide again, and their orders are compared with the
-//! recording.
+//! The helm reports of a replay: minds decide again, and their orders are compared with the recorded ones.
 
 use crate::minds::Minds;
 use messages::Order;
@@ -70,7 +69,7 @@ impl ReplayHelms {
 
 impl Helms for ReplayHelms {
     fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
-        // Decide again: recording all objective functions would take megabytes a second, and
+        // Decide again: recording all objective functions would take megabytes per second, and
         // strategies are deterministic. Comparison with the recorded order verifies this.
         let Some(order) = self.minds.decide(vehicle, decision, true) else {
             let reason = "no picture of this moment was recorded".to_owned();

@@ -110,14 +110,14 @@ fn bridge(args: &BridgeArgs) -> Result<ExitCode> {
     };
     let mut tell = |news: News<'_>| match news {
         News::OnRos { is_router: true } => screen::remark(&format!(
-            "no router at {}: the bridge is now the router",
+            "no router at {}: the bridge is acting as the router",
             args.router
         )),
         News::OnRos { is_router: false } => {
             screen::remark(&format!("connected to the router at {}", args.router))
         }
         News::Looking { reason } => screen::remark(&format!("looking for the game: {reason}")),
-        News::Showing { game } => screen::remark(&format!("ROS 2 sees {game}")),
+        News::Showing { game } => screen::remark(&format!("publishing game {game} to ROS 2")),
         News::Refused { refused } => screen::remark(&format!("refused: {refused}")),
     };
     ros::node::serve(&settings, &mut tell).context("the ROS 2 bridge")?;

@@ -68,7 +68,7 @@ pub(crate) fn demo(page: &PageArgs) -> Result<ExitCode> {
     })
 }
 
-/// The fastest speed that a person can follow, simulated seconds per second.
+/// The highest speed that a person can follow, simulated seconds per second.
 const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -225,8 +225,8 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-/// The number of boats for one agent process: as many as requested, or more if there are so many
-/// boats that the processes would overload the machine. The game is the same.
+/// The number of boats for one agent process: the requested number, or more if the processes for so many boats would
+/// overload the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))

@@ -22,7 +22,7 @@ pub(crate) struct Args {
     play: GameArgs,
     #[command(flatten)]
     pace: PaceArgs,
-    /// Records the game to this file, which must not exist
+    /// Records the game to this file, which must not already exist
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Name of the game on the network [default: the file name and a random number]
@@ -33,7 +33,7 @@ pub(crate) struct Args {
     afloat: Vec<String>,
     #[command(flatten)]
     hub: HubArgs,
-    /// Prints all reports as JSON lines, and stops when standard input ends
+    /// Prints all reports as JSON lines, and exits when standard input closes
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -104,7 +104,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // registration fails, users must pass the game's address; nothing else is lost.
     let registration = bus::register(&entry);
     if let Err(error) = &registration {
-        screen::remark(&format!("the game is found by its address only: {error}"));
+        screen::remark(&format!(
+            "the game can be found only by its address: {error}"
+        ));
     }
     let tell = &mut |message| printer.print(message);
     let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), tell)?;

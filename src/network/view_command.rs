@@ -19,16 +19,15 @@ mod training;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or
-    /// a recording or a part of its name [default: a running game; if there is none, the newest
-    /// recording in runs]
+    /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or a recording, or
+    /// part of its name [default: a running game; if there is none, the newest recording in runs]
     #[arg(value_name = "REPORT", conflicts_with_all = ["game", "connect"], value_parser = recording_file::named)]
     report: Option<PathBuf>,
     #[command(flatten)]
     leaf: LeafArgs,
     #[command(flatten)]
     page: PageArgs,
-    /// Stops when standard input ends; shows the recordings that it names, one per line
+    /// Exits when standard input closes; shows the recordings named there, one per line
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -45,7 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let recordings = args.for_parent.then(|| stop::with_parent(&stop));
     let page = args.page.open(&stop)?;
-    // A parent process starts the game itself, so it does not need these remarks.
+    // A parent process started the game itself, so it does not need these remarks.
     let is_told = !args.for_parent;
     let tell = Box::new(move |problem: &str| {
         if is_told {

@@ -27,7 +27,7 @@ mod state;
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Shows this vehicle's helm instead of all boats: mode, decision, behaviours
+    /// Shows the mode, decision and behaviours of this vehicle's helm, instead of all boats
     #[arg(long, value_name = "NAME")]
     helm: Option<String>,
     /// Updates per second
@@ -35,9 +35,9 @@ pub(crate) struct Args {
     rate: u8,
 }
 
-/// After this long without a frame, query whether the sim is still running.
+/// After this long without a frame, ask whether the sim is still running.
 const SILENCE: Duration = Duration::from_secs(3);
-/// How many events stay on the screen.
+/// Number of events kept on the screen.
 const EVENTS: usize = 6;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

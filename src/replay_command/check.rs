@@ -39,7 +39,7 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
             inputs.push(message.read::<Inputs>()?);
             continue;
         }
-        // If the disk was too slow, a decision is missing with all its inputs.
+        // If the disk was too slow, a decision and all its inputs are missing.
         let seq = frames;
         let [given] = inputs.as_slice() else {
             bail!("{} inputs before frame {seq}, expected one", inputs.len())
@@ -155,7 +155,7 @@ mod tests {
     use rules::event::EventCursor;
     use std::io::Cursor;
 
-    /// The first second of a game with unrecorded pictures; `change` may leave out decisions.
+    /// The first second of a game with unrecorded pictures; `change` may omit decisions.
     fn recorded(change: impl Fn(Decision) -> Option<Decision>) -> Recording {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("scenarios/games/attack_1v1.toml");

@@ -13,11 +13,10 @@ const TEAM: usize = 3;
 /// Time between its decisions, s.
 const PERIOD_S: f64 = 1.0;
 
-/// Writes the entry into `folder`. Returns what to tell the user.
+/// Writes the entry into `folder`. Returns a message for the user.
 ///
 /// # Errors
-/// If the competition does not provide the model's observations or accept its actions, and if a
-/// file cannot be written.
+/// If the competition does not provide the model's observations or accept its actions, or if a file cannot be written.
 pub(crate) fn write(model: &PolicyModel, is_sampled: bool, folder: &Path) -> Result<String> {
     let spec = model.spec;
     if spec.observation.edition().is_none() {
@@ -35,7 +34,7 @@ pub(crate) fn write(model: &PolicyModel, is_sampled: bool, folder: &Path) -> Res
     let expected = spec.observation.size(TEAM - 1, TEAM);
     if model.input_size() != expected {
         bail!(
-            "it takes {} numbers, expected {expected}: the competition is {TEAM} against {TEAM}",
+            "it has {} inputs, expected {expected}: the competition is {TEAM} against {TEAM}",
             model.input_size()
         );
     }
@@ -64,7 +63,7 @@ pub(crate) fn write(model: &PolicyModel, is_sampled: bool, folder: &Path) -> Res
     );
     if (spec.period_s - PERIOD_S).abs() > 1e-9 {
         text += &format!(
-            "note: it was trained to decide every {} s, and decides every {PERIOD_S} s in the competition\n",
+            "note: it was trained to decide every {} s, but in the competition it decides every {PERIOD_S} s\n",
             spec.period_s
         );
     }

@@ -1,4 +1,4 @@
-"""A policy trained with Squall, as an entry for the Maritime Capture the Flag competition. It needs numpy only.
+"""A policy trained with Squall, as an entry for the Maritime Capture the Flag competition. It needs only numpy.
 
 `policy.onnx` is the network, read and evaluated here. All boats of the team use it.
 """
@@ -12,11 +12,11 @@ import numpy as np
 OBSERVATION = "@OBSERVATION@"  # what the network was trained with
 OUTPUT = "@OUTPUT@"  # the network's output with the action
 CONTINUOUS = @CONTINUOUS@  # whether its actions are a turn and a speed, or one of 17
-SAMPLED = @SAMPLED@  # whether actions are drawn by the network's probabilities
+SAMPLED = @SAMPLED@  # whether actions are sampled from the network's probabilities
 SPEED_MAX_M_S = 3.0  # of the competition's Surveyor
 DIAGONAL_M = math.hypot(160.0, 80.0)  # of its field
 
-# Numbers of the own boat and of each other boat, with `is_disabled` in 2026.
+# Numbers of the boat itself and of each other boat, with `is_disabled` in 2026.
 OWN, OTHER = 22, 9
 
 

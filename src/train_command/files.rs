@@ -50,8 +50,7 @@ pub(super) struct Files {
 struct Table {
     name: &'static str,
     bytes: usize,
-    // Kept up with each line: reading a table again at every saved state would take longer and
-    // longer.
+    // Updated with each line: rereading a table at every saved state would take longer and longer.
     sum: Xxh3,
 }
 
@@ -66,7 +65,7 @@ impl Table {
         table
     }
 
-    /// Counts a text that follows in the file.
+    /// Accounts for text appended to the file.
     fn note(&mut self, text: &str) {
         self.bytes += text.len();
         self.sum.update(text.as_bytes());
@@ -93,7 +92,7 @@ impl Files {
         if samples > 0 {
             let path = folder.join(SUMS);
             let text = read(&path)?;
-            // The last line may have been cut off while it was written.
+            // The last line may be truncated.
             let is_kept = |line: &&str| {
                 line.ends_with('\n') && first_number(line).is_some_and(|at| at <= samples)
             };
@@ -281,7 +280,7 @@ fn open_times(path: &Path, samples: u64) -> Result<(File, f64)> {
     output_file::write(path, "the training", format!("samples,elapsed_s\n{kept}"))?;
     let file = File::options().append(true).open(path);
     let file = file.with_context(|| format!("cannot write to {}", path.display()))?;
-    // A page shows a run with a locked table as running. Some file systems have no locks.
+    // A page shows a run with a locked table as running. Some file systems do not support locks.
     drop(file.lock_shared());
     Ok((file, last.unwrap_or(0.0)))
 }

@@ -21,10 +21,10 @@ use std::time::Duration;
 
 /// Size limit of a state, bytes: networks of the largest size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
-/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and
-/// loses what came after the last one.
+/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and loses everything after
+/// the last saved state.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
-/// Part of the time, at most, that saving takes: one in this many.
+/// Saving takes at most one part in this many of the time.
 const SAVE_SHARE: u32 = 20;
 
 #[derive(clap::Args)]
@@ -38,7 +38,7 @@ pub(crate) struct Args {
     /// Resumes the training in the output folder; the result is the same as without interruption
     #[arg(long)]
     resume: bool,
-    /// Stops after this many samples, as Ctrl-C does
+    /// Stops after this many samples, as with Ctrl-C
     #[arg(long, value_name = "SAMPLES", value_parser = whole::<u64>(0, u64::MAX))]
     until: Option<u64>,
     /// Random seed [default: the seed in the file]
@@ -59,13 +59,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("runs/train").join(&training.name));
-    // Learning uses all threads, however few games there are.
+    // Learning uses all threads, however few games are played.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
     let writing = Arc::new(Mutex::new(()));
     let held = Arc::clone(&writing);
     stop::when_late(&stop, move || {
-        // Not while the files of an update are incomplete.
+        // Never while the files of an update are incomplete.
         let _complete = held.lock();
         screen::remark("stopped during an update; --resume continues from the last saved state");
         std::process::exit(130);

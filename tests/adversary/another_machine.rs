@@ -88,7 +88,7 @@ fn a_stranger_on_another_machine_changes_no_game_and_hears_no_orders() {
     }
     assert!(
         stranger.wait().success(),
-        "the stranger was let do something"
+        "the stranger was allowed to do something"
     );
     assert!(
         on_the_other(&hosts, "what_the_operator_does")
@@ -109,7 +109,7 @@ fn what_the_stranger_does() {
         drop(attack(&target));
     }
     std::thread::sleep(Duration::from_millis(500));
-    assert!(open.keys().len() > 20, "what everybody may hear is heard");
+    assert!(open.keys().len() > 20, "what everyone may hear is heard");
     let is_open = |key: &String| *key == target.topic("frame");
     assert_eq!(
         secret

@@ -32,7 +32,7 @@ pub(crate) const ATTACKS: [Attack; 9] = [
         many_declarations,
     ),
     ("a node that passes for a router", router),
-    ("connections that say nothing", silent_connections),
+    ("connections that send nothing", silent_connections),
     (
         "connections that stop half-way through the handshake",
         half_handshakes,
@@ -40,7 +40,7 @@ pub(crate) const ATTACKS: [Attack; 9] = [
     ("as many sessions as there is room for", sessions),
 ];
 
-/// Topics that anybody may publish on, and topics that only the sim receives.
+/// Topics that anyone may publish on, and topics that only the sim receives.
 const PUBLISHED: [&str; 6] = [
     "control",
     "order/x",

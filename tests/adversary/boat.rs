@@ -42,7 +42,7 @@ impl Boat {
             let (at, mode) = self
                 .commands
                 .recv_timeout(left)
-                .expect("the boat is sent it in time");
+                .expect("it is sent to the boat in time");
             if mode == *wanted {
                 return at;
             }

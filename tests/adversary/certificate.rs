@@ -110,7 +110,7 @@ fn traitor(sim: &Sim, keys: &TempDir, name: &str) -> Intruder {
     let folder = keys.path().join(name);
     Target::of(sim)
         .open_with("client", &tls(&folder, Some(&folder)))
-        .expect("its keys are good")
+        .expect("its keys are valid")
 }
 
 /// A request to join with these vehicles, without a proof.
@@ -184,7 +184,7 @@ fn who_crowds_the_port_keeps_nobody_with_keys_out_and_disturbs_nobody() {
     }
 }
 
-/// Existing links are kept: nobody is disconnected in the middle of a game.
+/// Existing links are kept: no node is disconnected in the middle of a game.
 #[test]
 fn an_expired_certificate_is_rejected_but_open_links_continue() {
     let valid = Duration::from_secs(20);
@@ -198,7 +198,7 @@ fn an_expired_certificate_is_rejected_but_open_links_continue() {
     assert!(
         late.open_with("client", &tls(&folder, Some(&folder)))
             .is_some(),
-        "they are good still"
+        "they are still valid"
     );
     std::thread::sleep((valid + Duration::from_secs(1)).saturating_sub(start.elapsed()));
     assert!(
@@ -258,7 +258,7 @@ fn a_red_agent_learns_nothing_about_blue_and_changes_nothing() {
     for _ in 0..200 {
         words.iter().for_each(|word| forger.publish(word, "forged"));
     }
-    wait_until("its own pictures come", || open.keys().len() > 20);
+    wait_until("its own pictures arrive", || open.keys().len() > 20);
     let not_its_own = |key: &String| *key != red.topic("picture/red");
     assert_eq!(
         secret

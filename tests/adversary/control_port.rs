@@ -160,7 +160,7 @@ fn an_e_stop_is_on_the_wire_in_time_whatever_happens_to_the_game() {
     drop(flood);
     rig.sim.process.signal("STOP");
     rig.measure("with a suspended sim");
-    // As operators do, through this machine's registry: the game itself does not respond.
+    // Through this machine's registry, as operators do: the game itself does not respond.
     rig.delegate();
     for (vehicle, words) in [
         ("blue_one", "an E-stop of this boat"),
@@ -224,7 +224,7 @@ fn orders_ahead_of_the_game_are_refused_and_the_sims_orders_still_count() {
             ),
             others_m: vec![],
         };
-        wait_until("it is refused and counted", || {
+        wait_until("it is rejected and counted", || {
             intruder.publish("external/blue_one", codec::encode(&forged));
             count("orders ahead of the game") > before
         });

@@ -23,7 +23,7 @@ const HALF_HELLO: [u8; 11] = [0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc, 3, 3];
 
 /// Time limit for an authorised node to join.
 const IN: Duration = Duration::from_secs(10);
-/// Maximum gap between frames, which come at least ten times a second. A link congested by a busy
+/// Maximum gap between frames, which arrive at least ten times a second. A link congested by a busy
 /// machine is closed, and reopened after a second.
 const GAP: Duration = Duration::from_secs(2);
 
@@ -121,7 +121,7 @@ impl Gaps {
         let last = self
             .last
             .lock()
-            .expect("nobody panics with it")
+            .expect("no thread panics while holding it")
             .replace(now);
         let gap = last.map_or(Duration::ZERO, |last| now - last);
         self.longest_us
@@ -148,7 +148,7 @@ pub(crate) fn is_withstood(
         let kept = crowd(&Target::of(&sim), files * 3 / 2);
         let during = wait_within(
             IN,
-            &format!("somebody comes in beside connections {what}"),
+            &format!("an agent joins beside connections {what}"),
             || comes_in(&sim),
         );
         sim.newest_progress();
@@ -159,12 +159,13 @@ pub(crate) fn is_withstood(
         drop(kept);
         let after = wait_within(
             IN,
-            &format!("somebody comes in after connections {what}"),
+            &format!("an agent joins after connections {what}"),
             || comes_in(&sim),
         );
         let gap = Duration::from_micros(gaps.longest_us.swap(0, Ordering::Relaxed));
         eprintln!(
-            "{files} files, {what}: in after {during:.1?}, later after {after:.1?}; E-stop after {stopped:.1?}; no frame for {gap:.1?}"
+            "{files} files, {what}: joined after {during:.1?}, later after {after:.1?}; E-stop after {stopped:.1?}; \
+            no frame for {gap:.1?}"
         );
         assert!(stopped < Duration::from_secs(1) && gap < GAP, "{what}");
         wait_until("it is released", || {

@@ -14,7 +14,7 @@ pub(crate) const SPEED: &str = "2";
 pub(crate) struct DisturbedGame {
     pub(crate) sim: Sim,
     pub(crate) agents: Vec<Process>,
-    /// A session that may speed the game up again, if there is one.
+    /// A session that may speed the game up again, if any.
     pub(crate) operator: Option<Bus>,
 }
 
@@ -39,7 +39,7 @@ impl DisturbedGame {
         }
     }
 
-    /// Checks that no node has left and that the game goes on.
+    /// Checks that no node has left and that the game continues.
     pub(crate) fn check(&mut self) {
         self.sim.newest_progress();
         self.sim.play_on(1.0);
@@ -54,9 +54,9 @@ impl DisturbedGame {
         }
         let done = self.sim.wait_for_kind("done");
         assert_eq!(done["outcome"]["digest"], undisturbed, "{}", done["run"]);
-        self.agents
-            .iter_mut()
-            .for_each(|agent| assert!(agent.wait().success(), "everybody leaves in peace"));
+        self.agents.iter_mut().for_each(|agent| {
+            assert!(agent.wait().success(), "every node leaves without an error")
+        });
         done
     }
 }

@@ -48,7 +48,7 @@ impl FakeSim {
                     .unwrap_or_default();
                 noted
                     .lock()
-                    .expect("nobody panics with it")
+                    .expect("no thread panics while holding it")
                     .push(String::from_utf8_lossy(&payload).into_owned());
                 let key = query.key_expr().clone();
                 drop(
@@ -72,7 +72,10 @@ impl FakeSim {
     }
 
     fn asked(&self) -> Vec<String> {
-        self.asked.lock().expect("nobody panics with it").clone()
+        self.asked
+            .lock()
+            .expect("no thread panics while holding it")
+            .clone()
     }
 }
 
@@ -120,9 +123,7 @@ fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
         }
     }
     game.check();
-    wait_until("what everybody may hear is heard", || {
-        open.keys().len() > 20
-    });
+    wait_until("what everyone may hear is heard", || open.keys().len() > 20);
     let asker = Intruder::of(&target);
     for topic in ["scenario", "events", "water", "join/agent/blue", "control"] {
         let answers = asker.ask(topic, json!({ "body": {} }).to_string().into_bytes());

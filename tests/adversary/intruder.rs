@@ -119,7 +119,7 @@ impl Intruder {
             .callback(move |sample| {
                 heard
                     .lock()
-                    .expect("nobody panics with it")
+                    .expect("no thread panics while holding it")
                     .push(sample.key_expr().to_string());
             });
         Heard {
@@ -181,6 +181,9 @@ impl Intruder {
 
 impl Heard {
     pub(crate) fn keys(&self) -> Vec<String> {
-        self.keys.lock().expect("nobody panics with it").clone()
+        self.keys
+            .lock()
+            .expect("no thread panics while holding it")
+            .clone()
     }
 }

@@ -1,9 +1,8 @@
-//! What an attacker who reaches a game's port and ignores our rules can do; it uses zenoh's own
-//! API.
+//! What an attacker can do who reaches a game's port and ignores our rules, using zenoh's own API.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,
-    reason = "processes are waited for by the clock, with a limit; what is measured is printed"
+    reason = "waits for processes by the clock, with a limit; prints measurements"
 )]
 
 mod another_machine;

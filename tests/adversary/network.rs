@@ -1,4 +1,4 @@
-//! zenoh's access control stops an intruder from forging; what is open to all is whole.
+//! zenoh's access control stops an intruder from forging; what is open to all arrives intact.
 
 use crate::disturbed_game::all_stay;
 use crate::intruder::Intruder;
@@ -123,7 +123,7 @@ fn a_query_at_the_default_priority_gets_the_whole_scenario_of_a_learned_strategy
     let asker = Intruder::at(&sim);
     for _ in 0..5 {
         let answers = asker.ask("scenario", "");
-        assert_eq!(answers.len(), 1, "it is not answered");
+        assert_eq!(answers.len(), 1, "it gets no answer");
         assert!(answers[0].len() > 150_000, "{} bytes", answers[0].len());
     }
     sim.stop();

@@ -105,7 +105,7 @@ fn a_stranger_who_answers_operators_cannot_swallow_commands() {
             );
         }
     }
-    assert!(!asked.lock().is_empty(), "he was asked as well");
+    assert!(!asked.lock().is_empty(), "the stranger was asked as well");
     // An operator who cannot distinguish the gateway from the stranger gets an error.
     assert!(matches!(
         operate(&session(&rig.sim, None), &rig.sim, &OperatorCommand::Status),
@@ -151,13 +151,13 @@ fn an_intercepted_proof_cannot_arm_a_boat_later() {
     wait_until("the boat is armed", || {
         let reply = operate(&operator, &rig.sim, &OperatorCommand::Arm)
             .expect("it is the gateway that answers");
-        // Before the gateway joins the game, nobody answers.
+        // Before the gateway joins the game, there is no answer.
         reply.is_some_and(|reply| reply.refused.is_none())
     });
     rig.tell(OperatorCommand::Disarm);
     std::thread::sleep(LATER);
     let proofs = std::mem::take(&mut *proofs.lock());
-    assert!(!proofs.is_empty(), "he has heard proofs");
+    assert!(!proofs.is_empty(), "the stranger has heard proofs");
     for proof in proofs {
         let answers = intruder.ask("operate/blue_one", proof);
         assert!(

@@ -79,7 +79,7 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
     let mut seen = Vec::new();
     for _ in 0..4 {
         let mut winners = Vec::new();
-        wait_until("somebody has it", || {
+        wait_until("an agent has it", || {
             let replies: Vec<Option<JoinReply>> = std::thread::scope(|scope| {
                 let asking: Vec<_> = racers
                     .iter()
@@ -99,7 +99,7 @@ fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
         });
         let (winner, ticket) = winners[0];
         assert_eq!(winner % 3, 0, "it has no token");
-        assert!(!seen.contains(&ticket), "a ticket that somebody had");
+        assert!(!seen.contains(&ticket), "a ticket that another node had");
         seen.push(ticket);
         // A repeated request does not harm the boat's agent, whatever the others do.
         assert_eq!(

@@ -85,7 +85,7 @@ fn what_was_seen_once_cannot_be_used_again() {
     let _agents = sim.agent(&FOUR);
     sim.wait_for_kind("started");
     let intruder = Intruder::at(&sim);
-    // The complete exchange of a node that knows the token, by hand.
+    // The complete exchange of a node that knows the token, carried out by hand.
     let request = |body: Value| serde_json::to_vec(&body).expect("JSON");
     let answers = intruder.ask("control", request(json!({ "body": "pause" })));
     let challenge: Value = serde_json::from_slice(&answers[0]).expect("JSON");

@@ -3,7 +3,7 @@
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,
-    reason = "processes are waited for by the clock, with a limit; what is measured is printed"
+    reason = "waits for processes by the clock, with a limit; prints measurements"
 )]
 
 mod certificate;

@@ -1,4 +1,4 @@
-//! A full disk: every command reports it and fails. Linux has the device `/dev/full` for that.
+//! A full disk: every command reports it and fails. Linux provides the device `/dev/full` for this.
 #![cfg(target_os = "linux")]
 
 use crate::program::{command, only_file, printed, project, words};

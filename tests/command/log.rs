@@ -176,7 +176,7 @@ fn mistakes_are_explained() {
     for (args, said) in [
         (
             &[recording, "--csv", "whales"][..],
-            "there is no topic \"whales\" in this recording; there are events, frame",
+            "no topic \"whales\" in this recording; its topics are: events, frame",
         ),
         (
             &["--compare", recording, "nowhere.mcap"],
@@ -184,9 +184,12 @@ fn mistakes_are_explained() {
         ),
         (
             &["--compare", recording],
-            "recordings given: 1, expected two with --compare",
+            "--compare needs two recordings, but got 1",
         ),
-        (&[recording, recording], "recordings given: 2, expected one"),
+        (
+            &[recording, recording],
+            "needs one recording, or several with --quality, but got 2",
+        ),
         (
             &["--quality", recording, "nowhere.mcap"],
             "there is no file nowhere.mcap",
@@ -196,7 +199,7 @@ fn mistakes_are_explained() {
         let refused = program::refusal(program::project(), &[&["log"], args].concat());
         assert!(
             refused.contains(said),
-            "{args:?} should say {said:?}, but says {refused}"
+            "{args:?} should print {said:?}, but prints {refused}"
         );
     }
 }

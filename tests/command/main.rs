@@ -1,5 +1,5 @@
 //! Tests the program's commands from outside: output, files and error messages.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 mod full_disk;
 mod log;

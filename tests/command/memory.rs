@@ -1,4 +1,4 @@
-//! Memory for examining a recording: a recording of twice the length needs no more.
+//! Memory for examining a recording: a recording twice as long needs no more.
 
 use crate::program;
 use std::path::Path;
@@ -62,7 +62,7 @@ fn peak_of(dir: &Path, args: &[&str]) -> u64 {
         }
         #[expect(
             clippy::disallowed_methods,
-            reason = "what a process has at most is seen only while it runs"
+            reason = "a process's peak memory can be seen only while it runs"
         )]
         std::thread::sleep(Duration::from_millis(1));
     }

@@ -3,7 +3,7 @@
 use crate::program::{command, only_file, printed, refusal};
 use std::path::Path;
 
-/// Built-in files stand in for missing ones of a folder `scenarios`, also if its name is not typed.
+/// Built-in files stand in for those missing from a folder `scenarios`, even if its name is not typed.
 #[test]
 fn a_file_in_scenarios_is_the_same_from_every_folder() {
     let dir = tempfile::tempdir().unwrap();
@@ -41,7 +41,7 @@ fn a_name_does_for_every_scenario_file() {
     );
     assert!(
         refusal(&dir, &["check", "min"])
-            .contains("there is no scenario file min (did you mean mine?)")
+            .contains("no scenario file named \"min\" (did you mean mine?)")
     );
     assert!(
         printed(&dir, &["policy", "options"]).contains("options: a value of a strategy's variable")
@@ -69,7 +69,7 @@ fn a_recording_has_a_name_and_the_newest_needs_none() {
     let dir = tempfile::tempdir().unwrap();
     for args in [&["log"][..], &["replay", "--check"]] {
         assert!(
-            refusal(&dir, args).contains("there is no recording in runs; record a game"),
+            refusal(&dir, args).contains("no recordings in runs/; record a game"),
             "{args:?}"
         );
     }
@@ -121,7 +121,7 @@ fn a_recording_has_a_name_and_the_newest_needs_none() {
         let said = printed(&dir, args);
         assert!(said.contains(want), "{args:?}: {said}");
     }
-    assert!(refusal(&dir, &["log", "gale"]).contains("there is no recording gale in runs"));
+    assert!(refusal(&dir, &["log", "gale"]).contains("no recording matches \"gale\" in runs/"));
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn the_users_own_files_come_first_and_one_that_overrides_is_announced_once() {
     printed(&dir, &["copy", "gale"]);
     assert_eq!(stderr(&["new", "strategy", "strategy_4"]), remark);
     let listed = printed(&dir, &["files"]);
-    let own = "your own files:\n  scenarios/strategies/strategy_4.toml  overrides the built-in file; attacks while";
+    let own = "your own files:\n  scenarios/strategies/strategy_4.toml  overrides the built-in file; goes for";
     assert!(
         listed.starts_with(own) && listed.contains("\nseas: any "),
         "{listed}"

@@ -25,17 +25,15 @@ fn missing(case: &str) -> Vec<String> {
         } else {
             looked_for += commands.len();
             let silent = commands.iter().filter(|(_, said)| !said.contains(&line));
-            missing.extend(
-                silent.map(|(command, said)| {
-                    format!("{command} should say {line:?}, but says {said}")
-                }),
-            );
+            missing.extend(silent.map(|(command, said)| {
+                format!("{command} should print {line:?}, but prints {said}")
+            }));
         }
         if let Some((path, text)) = &file {
             std::fs::write(path, text).unwrap();
         }
     }
-    assert!(looked_for > 0, "nothing is looked for: {case}");
+    assert!(looked_for > 0, "no text is expected: {case}");
     missing
 }
 

@@ -131,7 +131,7 @@ fn the_free_boat_is_that_of_the_trial() {
                 seed,
             ],
         );
-        let want = ["drift speed", "drift toward", "mean heading"]
+        let want = ["drift speed", "drift direction", "mean heading"]
             .map(|name| numbers(value(&trial, name))[0]);
         let got = numbers(value(&text, "free boat, simulated"));
         // Speeds are printed in hundredths, bearings in whole degrees.

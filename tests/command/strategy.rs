@@ -96,7 +96,7 @@ fn a_broken_strategy_is_explained_and_fails() {
     assert!(!is_good);
     assert!(
         text.starts_with(
-            "x.toml:13:9: when has \"lap\" here, which is unknown, expected a variable (laps)"
+            "x.toml:13:9: `when` contains \"lap\", which is unknown, expected a variable (laps)"
         ),
         "{text}"
     );

@@ -203,7 +203,7 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     for row in entries {
         assert_eq!(
             row["games"], 30,
-            "five seeds, two sides, three opponents with itself"
+            "five seeds, two sides, three opponents including itself"
         );
         for key in [
             "score",
@@ -348,7 +348,7 @@ fn an_odd_number_of_games_is_rounded_up_with_a_note() {
     let output = output(&["tournament", &tournament, "--json", &report]);
     let note = String::from_utf8(output.stderr).unwrap();
     assert!(
-        output.status.success() && note.contains("5 games per pairing become 6"),
+        output.status.success() && note.contains("rounding 5 games per pairing up to 6"),
         "{note}"
     );
     assert!(
@@ -407,7 +407,7 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| (name, name));
     let said = play(&[four, pav01], &["--league", &league]);
     assert!(said.contains("0 of 4 games already played"), "{said}");
-    // The last line was cut off when the machine stopped.
+    // The last line was truncated when the machine stopped.
     let text = std::fs::read_to_string(&results).unwrap();
     std::fs::write(&results, &text[..text.len() - 9]).unwrap();
     let said = play(&[four, pav01, idle], &["--league", &league]);
@@ -571,7 +571,7 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
         text.contains("both games: easy_attackers (first as blue) "),
         "{text}"
     );
-    // A tournament swaps the strategies of the two teams in the same way.
+    // A tournament swaps the two teams' strategies in the same way.
     let (_, first) = run(&[]);
     let (_, second) = run(&["--blue", "idle", "--red", "easy_attackers"]);
     assert_eq!(
@@ -586,7 +586,7 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
             "{team}"
         );
     }
-    assert!(points(&first, "blue") > 0, "somebody scores");
+    assert!(points(&first, "blue") > 0, "a team scores");
     assert!(
         text.contains("nothing in this game is random") && first["random"] == false,
         "{text}"

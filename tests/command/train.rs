@@ -191,7 +191,7 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
     ] {
         assert!(
             read(&here.join("whole"), name) == read(&cut, name),
-            "{name} is another after --resume"
+            "{name} differs after --resume"
         );
     }
 
@@ -283,7 +283,7 @@ fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
     let told: BTreeSet<String> = named.iter().map(|(_, file)| (*file).to_owned()).collect();
     assert!(
         files == told && told.len() == named.len(),
-        "a file for each episode that ended, and no other"
+        "a file for each episode that ended, and no others"
     );
     for (seed, file) in [named[0], named[named.len() - 1]] {
         assert!(

@@ -1,7 +1,7 @@
 //! `squall trial` and `squall identify` from the command line: reference data as CSV files.
 #![expect(
     clippy::disallowed_methods,
-    reason = "tolerances are far above the last bit"
+    reason = "tolerances are far larger than the last bit"
 )]
 
 use crate::program::{printed, project, scenario, squall};
@@ -457,7 +457,7 @@ fn manoeuvres_have_the_numbers_of_the_current_and_of_the_published_boat() {
         &["--current-m-s", "0.5", "--current-toward-deg", "30"],
     );
     assert!(
-        (drift["drift speed"] - 0.5).abs() < 0.005 && (drift["drift toward"] - 30.0).abs() < 0.5,
+        (drift["drift speed"] - 0.5).abs() < 0.005 && (drift["drift direction"] - 30.0).abs() < 0.5,
         "{drift:?}"
     );
     let ahead = manoeuvre(

@@ -12,7 +12,7 @@ prints `ready`, then takes one command a line from standard input and answers ea
     cut A B          drops everything between two hosts, packets in flight included
     restore          ends all cuts
     delay-ms N       one-way delay of packets that are sent from now on
-    loss-pct N       share of packets that are lost
+    loss-pct N       percentage of packets that are lost
     rate-kbit N      rate limit of each direction between two hosts
     stats            counts since the last `stats`, as JSON
     trace FROM_NS    packets since this time of the monotonic clock, one a line, then `end`
@@ -36,9 +36,9 @@ from dataclasses import dataclass
 from priority import run_at_once
 
 MTU_BYTES = 1500
-# Of <linux/if_tun.h>.
+# From <linux/if_tun.h>.
 TUNSETIFF, IFF_TUN, IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
-# Packets read from one device before the others have their turn.
+# Packets read from one device before the others get their turn.
 BATCH = 64
 # The newest packets, kept for `trace`.
 TRACE_MAX = 50_000
@@ -46,14 +46,14 @@ TRACE_MAX = 50_000
 
 @dataclass
 class Quality:
-    """What a link does to packets."""
+    """The effect of a link on packets."""
 
     delay_s: float = 0.0
-    # Share of packets that are lost, 0 to 1.
+    # Fraction of packets that are lost, 0 to 1.
     loss: float = 0.0
     # Of each direction between two hosts; None is unlimited.
     rate_bytes_s: float = None
-    # What waits for the rate limit; a packet that finds no room is dropped.
+    # The queue for the rate limit; a packet that does not fit is dropped.
     queue_bytes: int = 256 * 1024
 
 
@@ -64,7 +64,7 @@ class Scheduler:
         self.quality = quality
         self.random = random.Random(seed)
         self.cuts = set()
-        # When the sender of a direction has sent everything it has taken so far.
+        # When the sender of a direction has sent everything it has accepted so far.
         self.idle_at_s = {}
         self.in_flight = []
         self.number = 0
@@ -79,7 +79,7 @@ class Scheduler:
         return frozenset((source, target)) in self.cuts
 
     def send(self, now_s, source, target, packet):
-        """Takes a packet. Returns its fate: sent, lost, cut or full."""
+        """Accepts a packet. Returns its fate: sent, lost, cut or full."""
         # Drawn for every packet, so that cuts do not shift the losses that follow.
         lost = self.random.random() < self.quality.loss
         if self.is_cut(source, target):
@@ -138,13 +138,13 @@ class Link:
             self.devices[name] = open_device(f"sqbl{os.getpid()}-{number}", namespace, address)
             self.host_of[ipaddress.ip_address(address).packed] = name
         self.counts = Counter()
-        # What hosts send, lost or not.
+        # Packets sent by hosts, lost or not.
         self.sent_bytes = Counter()
         self.late_ms = []
         self.trace = deque(maxlen=TRACE_MAX)
 
     def carry(self, commands):
-        """Carries packets and obeys commands until the commands end."""
+        """Carries packets and executes commands until the commands end."""
         source_of = {device: name for name, device in self.devices.items()}
         text = b""
         while True:
@@ -164,7 +164,7 @@ class Link:
                     print(self.obey(line.decode()), flush=True)
 
     def receive(self, source, device):
-        """Takes what a host sends."""
+        """Receives a host's packets."""
         for _ in range(BATCH):
             try:
                 packet = os.read(device, MTU_BYTES + 100)
@@ -180,7 +180,7 @@ class Link:
             self.trace.append((time.monotonic_ns(), fate, source, target, packet[:60], len(packet)))
 
     def deliver(self):
-        """Hands over what is due."""
+        """Delivers packets that are due."""
         now_s = time.monotonic()
         for due_s, target, packet in self.scheduler.arrivals(now_s):
             self.late_ms.append(1e3 * (now_s - due_s))
@@ -266,9 +266,9 @@ def main():
     parser.add_argument("--host", action="append", required=True, metavar="NAME=NAMESPACE:ADDRESS",
                         help="a machine, once for each of them; all addresses in one network of 24 bits")
     parser.add_argument("--delay-ms", type=float, default=0.0, help="one-way delay [0]")
-    parser.add_argument("--loss-pct", type=float, default=0.0, help="share of packets that are lost [0]")
+    parser.add_argument("--loss-pct", type=float, default=0.0, help="percentage of packets that are lost [0]")
     parser.add_argument("--rate-mbit", type=float, help="rate limit of each direction between two hosts [none]")
-    parser.add_argument("--queue-kb", type=int, default=256, help="what may wait for the rate limit [256]")
+    parser.add_argument("--queue-kb", type=int, default=256, help="maximum queue for the rate limit [256]")
     parser.add_argument("--seed", type=int, default=1, help="random seed of the losses [1]")
     args = parser.parse_args()
     rate_bytes_s = None if args.rate_mbit is None else args.rate_mbit * 1e6 / 8
@@ -277,7 +277,7 @@ def main():
         link = Link(hosts_of(args.host), Scheduler(quality, args.seed))
     except (OSError, ValueError, subprocess.CalledProcessError) as error:
         sys.exit(f"the link cannot be made: {error}")
-    # Programs that keep every core busy must not delay packets beyond what was asked for.
+    # Programs that keep every core busy must not delay packets beyond the requested delay.
     run_at_once()
     print("ready", flush=True)
     link.carry(sys.stdin.fileno())

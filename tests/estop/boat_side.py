@@ -3,9 +3,9 @@
 
     boat_side.py BOAT=LISTEN_PORT=BOAT_ADDRESS=CONTROL_ADDRESS ...
 
-Gateways connect to LISTEN_PORT of loopback. Each command of a gateway to its boat is printed when its bytes come, before the
-boat has them: `wire NS BOAT MODE SENTENCE`, NS of the monotonic clock. Standard input takes requests, JSON one a line, with the
-keys `boat` and `body`, and answers `reply JSON`. The game's token is in SQUALL_TOKEN.
+Gateways connect to LISTEN_PORT of loopback. Each command of a gateway to its boat is printed when its bytes arrive,
+before the boat receives them: `wire NS BOAT MODE SENTENCE`, NS of the monotonic clock. Standard input takes requests,
+JSON one a line, with the keys `boat` and `body`, and answers `reply JSON`. The game's token is in SQUALL_TOKEN.
 """
 
 import hashlib
@@ -20,12 +20,12 @@ import time
 from priority import run_at_once
 
 KEY = b"gateway control port"
-# How long a control port may take to answer, s.
+# How long a control port may take to reply, s.
 ANSWER_S = 5.0
 
 
 def modes_in(text):
-    """The whole sentences in the bytes that have come, with the mode of each command, and the rest.
+    """The complete sentences in the bytes received, with the mode of each command, and the rest.
 
     >>> modes_in(b"$PSEAC,L,0,0,0,*75\\r\\n$PSE")
     ([('L', '$PSEAC,L,0,0,0,*75')], b'$PSE')
@@ -78,7 +78,7 @@ def copy(source, target, see):
 
 
 def serve(boat, port, address):
-    """The wire of one boat, as often as its gateway connects."""
+    """The wire of one boat, for each connection of its gateway."""
     run_at_once()
     host, _, boat_port = address.rpartition(":")
     for near in accepted(port):

@@ -1,4 +1,4 @@
-"""What is wrong while boats are stopped."""
+"""The faults during which boats are stopped."""
 
 import random
 import signal
@@ -14,11 +14,11 @@ LOSS_PCT = 5.0
 
 
 class Skipped(Exception):
-    """A condition cannot be made here; says why."""
+    """A condition cannot be created here; gives the reason."""
 
 
 class Condition:
-    """What is wrong: all the while, and around each stop."""
+    """A fault: permanent, or around each stop."""
 
     def __init__(self, rig, name, delay_ms):
         self.name = name
@@ -58,14 +58,14 @@ class Cut(Condition):
 
     def after(self):
         self.machines.tell_link("restore")
-        # TCP sends a stop that was cut off again, after no longer than the cut lasted. It must not be taken for the next one.
+        # TCP resends a stop that was cut off, within the duration of the cut. It must not be mistaken for the next one.
         time.sleep(time.monotonic() - self.cut_s + 0.5)
 
 
 class StoppedSim(Condition):
     def before(self, number):
         self.rig.sim.send_signal(signal.SIGSTOP)
-        # Orders that have become old stop the boats too, after a second.
+        # Expired orders also stop the boats, after a second.
         time.sleep(self.random.uniform(0.05, 0.3))
 
     def after(self):
@@ -73,17 +73,17 @@ class StoppedSim(Condition):
 
 
 class Stranger(Condition):
-    """A stranger on the simulation's machine: nearer than any other."""
+    """A stranger on the simulation's machine: nearer than anyone else."""
 
     what, about, stranger = "forge", BOATS, None
 
     def begin(self):
         words = [self.rig.stranger_python, HERE / "stranger.py", self.what, self.rig.endpoint, GAME, *self.about]
         self.stranger = self.machines.start(f"stranger_{self.what}", SIM, words)
-        # The first report comes when it begins, the second when it has been at it for a second.
+        # The first report comes when it starts, the second after it has been running for a second.
         for mark in (0, 1):
             if self.stranger.find(lambda line: line.startswith("{"), 30.0, mark) is None:
-                raise RuntimeError(f"the stranger does not begin: see {self.stranger.log.name}")
+                raise RuntimeError(f"the stranger does not start: see {self.stranger.log.name}")
 
     def end(self):
         if self.stranger is not None:

@@ -5,20 +5,20 @@ Three machines (network namespaces) are joined by an emulated link with delay, l
 simulation's, and that of the gateways and two emulated boats. The boats are armed and under way before each stop.
 One boat and all boats are stopped in turn, by a line to `squall gateway console`, under each of these conditions:
 
-    clean        nothing is wrong
+    clean        no fault
     flood        a stranger floods the game's port and the gateways' control ports
     cut          the path to the simulation or to the boats has been cut, in turn
-    stranger     a stranger answers in the gateways' place, and forges their status
+    stranger     a stranger replies in the gateways' place and forges their status
     stopped-sim  the simulation is suspended
     loss         5 % of all packets are lost, on every path
 
-A stop is in time if every boat meant was sent standby within the one-way delay plus 200 ms. `squall gateway tell` is
-measured too, with delays of 50, 150 and 300 ms, without and with loss: in round trips, beyond what it takes without a
-delay. The exit code is 1 if a stop is late, if the console does not show it, or shows it before it has happened, or if
-`tell` without loss needs more than three round trips.
+A stop is in time if every boat concerned was sent standby within the one-way delay plus 200 ms. `squall gateway tell`
+is measured too, with delays of 50, 150 and 300 ms, without and with loss: in round trips, beyond what it takes without
+a delay. The exit code is 1 if a stop is late, if the console does not show it, or shows it before it has happened, or
+if `tell` without loss needs more than three round trips.
 
-Linux, root, Python 3.9, no packages; strangers publish by the package eclipse-zenoh. Where namespaces or TUN devices
-cannot be made, nothing is measured, and the exit code is 0.
+Linux, root, Python 3.9, no packages; strangers publish with the package eclipse-zenoh. Where namespaces or TUN devices
+cannot be created, nothing is measured, and the exit code is 0.
 """
 
 import argparse
@@ -40,16 +40,17 @@ from machine import HERE, Machines, Unavailable, must_be_possible
 from rig import BOATS, CONSOLE, MACHINES, NEVER_S, ROOT, SIM, Rig, stopped_line
 
 ALLOWANCE_MS = 200.0
-# With loss, a report of the stop before may come after the next one was asked for: boats are stopped every second here.
+# With loss, a report of the previous stop may arrive after the next one was requested: boats are stopped every second
+# here.
 FALSE_SHARE = 0.01
-# How long the operator's view may take to follow, s.
+# Maximum delay of the operator's view, s.
 SHOWN_S = 3.0
 TARGETS = ("blue_one", "all", "red_one", "all")
-# The emulated link may deliver a packet so late without a word, ms.
+# Lateness of a packet that the emulated link does not report, ms.
 LINK_LATE_MS = 5.0
-# How much longer than the network copies of a stop may take, s.
+# Extra time that copies of a stop may take, beyond the network's delay, s.
 SETTLE_S = 0.1
-# Tries in vain, because the boats do not stay under way, for each that counts.
+# Maximum number of failed attempts per valid one, because the boats do not stay under way.
 VAIN_MAX = 5
 PINGS = 400
 TELL_DELAYS_MS = (0.0, 50.0, 150.0, 300.0)
@@ -70,10 +71,10 @@ def arguments():
     parser.add_argument("--stranger-python", default=sys.executable, metavar="PYTHON",
                         help="a Python with eclipse-zenoh, for strangers [the one that runs this]")
     parser.add_argument("--out", type=Path, default=ROOT / "runs" / "estop",
-                        help="a folder is made in it for each run: what programs print, packets of stops that are late "
+                        help="a subfolder is created for each run: the programs' output, and packets of late stops "
                              "[runs/estop]")
     args = parser.parse_args()
-    # Beyond that, the detour by the simulation that a cut leaves would be late whatever happens.
+    # Beyond that, the detour through the simulation that remains after a cut would always be late.
     for name, least, most in (("times", 1, 100_000), ("tell_times", 0, 1000), ("delay_ms", 0.0, 190.0)):
         if not least <= getattr(args, name) <= most:
             parser.error(f"--{name.replace('_', '-')} is {getattr(args, name)}, expected {least} to {most}")
@@ -84,7 +85,7 @@ def arguments():
 
 
 def check_link(machines, delay_ms):
-    """Compares the emulated link with what was asked of it."""
+    """Compares the emulated link with its settings."""
     for loss_pct in (0.0, LOSS_PCT):
         machines.tell_link("loss-pct", loss_pct)
         for far in MACHINES[1:]:
@@ -103,11 +104,11 @@ def milliseconds_between(from_ns, to_ns):
 
 
 def wire_ms_each(rig, boats, from_ns):
-    """Until each boat was sent standby, by an E-stop and nothing else."""
+    """Time until each boat was sent standby, by an E-stop and nothing else."""
     until = time.monotonic() + NEVER_S
     took_ms = [milliseconds_between(from_ns, rig.standby_after(boat, from_ns, until - time.monotonic()))
                for boat in boats]
-    # A failsafe that happened just then is no E-stop.
+    # A failsafe that happened just then is not an E-stop.
     return [took if rig.state(boat).startswith("e-stopped") else math.inf for boat, took in zip(boats, took_ms)]
 
 
@@ -129,7 +130,7 @@ def stop_once(rig, console, condition, number, tally):
         shown = [console.find(stopped_line(boat), until - time.monotonic(), mark) for boat in boats]
         stop = Stop(wire, [milliseconds_between(began_ns, line and line[0]) for line in shown])
         if min(wire) < condition.delay_ms:
-            # Nothing is faster than the network: a late copy of the stop before.
+            # Nothing is faster than the network: it is a late copy of the previous stop.
             return None
         stalls_ms = rig.stalls_ms(began_ns, time.monotonic_ns())
         tally.stall_ms = max([tally.stall_ms, *stalls_ms])
@@ -143,7 +144,7 @@ def stop_once(rig, console, condition, number, tally):
 
 
 def keep_evidence(rig, console, condition, number, stop, began_ns, mark, stalls_ms):
-    """Writes what the link and the console saw of a stop that was late, not shown, or shown too early."""
+    """Writes the records of the link and the console for a stop that was late, not shown, or shown too early."""
     if stop.is_good(condition.delay_ms + ALLOWANCE_MS):
         return
     name = f"{condition.name}-{number}.txt"
@@ -177,7 +178,7 @@ def measure_console(rig, condition, times, tally):
         condition.end()
         console.write("quit")
         code = rig.machines.end(console, None)
-    for count, what in ((vain, "tries in vain: the boats were not under way"), (code, "is the console's exit code"),
+    for count, what in ((vain, "failed attempts: the boats were not under way"), (code, "is the console's exit code"),
                         (rig.stops_after_release, "releases of the fleet that a late copy of its stop undid")):
         if count:
             print(f"  {condition.name}: {count} {what}")
@@ -207,7 +208,7 @@ def measure_consoles(rig, args):
 
 
 def tell_once(rig, words, boats, delay_ms):
-    """One E-stop by `tell`: until it is on the wire, its exit code, and its words."""
+    """One E-stop by `tell`: the time until it is on the wire, its exit code, and its output."""
     for boat in boats:
         rig.wait_until(f"{boat} is under way", lambda boat=boat: rig.get_under_way(boat), 60.0)
     began_ns, done = rig.tell(CONSOLE, *words)
@@ -219,7 +220,7 @@ def tell_once(rig, words, boats, delay_ms):
 
 
 def measure_tells(rig, times):
-    """The table of `tell`; whether it needs no more round trips than it may."""
+    """The table of `tell`; whether it stays within the allowed round trips."""
     first, start_ms, rows, words_said, passed = BOATS[0], {}, [], Counter(), True
     commands = {f"{first} estop": (first, "estop"), "the same, --gateway": (first, "estop", "--gateway", rig.control[first]),
                 "all estop": ("all", "estop")}
@@ -242,7 +243,7 @@ def measure_tells(rig, times):
             print(f"tell: {delay_ms:g} ms, {loss_pct:g} % loss: measured", flush=True)
     print(f"\nFrom the start of `squall gateway tell` until the boats are sent standby, ms; one-way delay,\nms; "
           f"loss, %\n\n"
-          f"{table(TELL_HEADING, rows)}\n\nWhat it said, by exit code:")
+          f"{table(TELL_HEADING, rows)}\n\nIts output, by exit code:")
     for (code, said), count in words_said.most_common(12):
         print(textwrap.fill(f"{count} x {code}: {said}", WIDTH, subsequent_indent="    "))
     rig.machines.tell_link("loss-pct", 0)
@@ -250,7 +251,7 @@ def measure_tells(rig, times):
 
 
 def measure(args, out):
-    """Measures what was asked for; whether all of it passed."""
+    """Takes the requested measurements; returns whether all passed."""
     passed = True
     with Machines(MACHINES, out, args.seed) as machines:
         machines.tell_link("delay-ms", args.delay_ms)
@@ -280,9 +281,9 @@ def main():
         print(f"FAILED: {error}")
         return 1
     except KeyboardInterrupt:
-        print("interrupted: nothing is judged")
+        print("interrupted: no result")
         return 130
-    print("every stop was in time" if passed else f"stops were late, or shown wrongly: see {out}")
+    print("every stop was in time" if passed else f"stops were late or shown incorrectly: see {out}")
     return 0 if passed else 1
 
 

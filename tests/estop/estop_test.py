@@ -53,7 +53,7 @@ class SchedulerTest(unittest.TestCase):
         scheduler = Scheduler(Quality(delay_s=1.0, rate_bytes_s=1000, queue_bytes=250), seed=1)
         packet = bytes(100)
         self.assertEqual([scheduler.send(0.0, "a", "b", packet) for _ in range(3)], ["sent", "sent", "full"])
-        # The other direction has a queue of its own, and room comes with time.
+        # The other direction has its own queue, and space becomes free over time.
         self.assertEqual(scheduler.send(0.0, "b", "a", packet), "sent")
         self.assertEqual(scheduler.send(0.1, "a", "b", packet), "sent")
         due_s = [due_s for due_s, target, _ in arrivals(scheduler, 9.0) if target == "b"]
@@ -87,7 +87,7 @@ class FigureTest(unittest.TestCase):
             ([good, Stop([60.0, 250.1], [300.0, 300.0])], False),
             ([good, Stop([math.inf], [math.inf])], False),
             ([good, Stop([60.0, 60.0], [110.0, math.inf])], False),
-            # The second boat is shown before it has stopped, though the first comes later.
+            # The second boat is shown before it has stopped, although the first is later.
             ([good, Stop([60.0, 60.0], [110.0, 59.0])], False),
             ([], False),
         ):

@@ -1,4 +1,4 @@
-"""What was measured of many stops: counts, quantiles, tables of at most 80 columns."""
+"""Statistics of many stops: counts, quantiles, and tables of at most 80 columns."""
 
 import math
 from dataclasses import dataclass, field
@@ -7,7 +7,7 @@ WIDTH = 80
 
 
 def quantile(values, share):
-    """The smallest value that at least this share of all values do not exceed (nearest rank); None of no values."""
+    """The quantile at this fraction of all values, by nearest rank; None without values."""
     if not values:
         return None
     rank = max(1, math.ceil(share * len(values)))
@@ -18,13 +18,13 @@ def quantile(values, share):
 class Stop:
     """One E-stop of one boat or several; times are ms from the operator's request."""
 
-    # Until each boat was sent standby; infinite if it never was.
+    # Time until each boat was sent standby; infinite if it never was.
     wire_ms_each: list
-    # Until the operator was shown each boat as stopped; infinite if that never happened.
+    # Time until the operator was shown each boat as stopped; infinite if that never happened.
     shown_ms_each: list
 
     def wire_ms(self):
-        """Until the last of the boats was sent standby."""
+        """Time until the last of the boats was sent standby."""
         return max(self.wire_ms_each)
 
     def is_shown(self):
@@ -46,7 +46,7 @@ class Tally:
     stops: list = field(default_factory=list)
     # The longest time during a stop for which the machine let ordinary programs wait.
     stall_ms: float = 0.0
-    # How many stops, of all, may be shown before they happened.
+    # Fraction of all stops that may be shown before they have happened.
     false_share: float = 0.0
 
     def in_time(self):
@@ -81,7 +81,7 @@ def milliseconds(value):
 def table(heading, rows):
     """Rows below a heading: the first column to the left, all others to the right.
 
-    A table that is wider than a terminal is an error of ours.
+    A table wider than a terminal is our error.
     """
     rows = [[*row, *[""] * (len(heading) - len(row))] for row in [heading, *rows]]
     columns = max(map(len, rows))
@@ -94,5 +94,5 @@ def table(heading, rows):
 
 
 def round_trips(took_ms, start_ms, delay_ms):
-    """How many round trips a command took, without the time that it takes on a network without delay."""
+    """Number of round trips that a command took, excluding its time on a network without delay."""
     return None if delay_ms == 0 else (took_ms - start_ms) / (2 * delay_ms)

@@ -12,9 +12,9 @@ import sys
 import time
 
 EVERY_S = 0.005
-# How far a round trip may be from twice the delay, ms: a busy machine's own.
+# Maximum deviation of a round trip from twice the delay, ms: that of a busy machine.
 ROUND_TRIP_MS = 5.0
-# How far the share that is lost may be from what was asked for, in standard deviations.
+# Maximum deviation of the lost fraction from the requested one, in standard deviations.
 DEVIATIONS = 4.0
 
 
@@ -33,7 +33,7 @@ def echo_request(identifier, number):
 
 
 def ping(address, count):
-    """Round trips, ms, of those of `count` echo requests that were answered."""
+    """Round trips, ms, of the answered ones among `count` echo requests."""
     identifier, round_trips_ms = os.getpid() & 0xFFFF, []
     with socket.socket(socket.AF_INET, socket.SOCK_RAW, socket.IPPROTO_ICMP) as icmp:
         icmp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
@@ -52,12 +52,12 @@ def ping(address, count):
 
 
 def problem_of(measured, delay_ms, loss_pct):
-    """What is wrong with the link, given what was measured; None if nothing is."""
+    """The fault of the link, according to the measurements; None if there is none."""
     if not measured["received"]:
-        return "nothing comes back"
+        return "nothing is returned"
     if not -0.1 <= measured["median_ms"] - 2 * delay_ms <= ROUND_TRIP_MS:
         return f"a round trip takes {measured['median_ms']:.1f} ms, expected {2 * delay_ms:.1f}"
-    # Either way.
+    # In either direction.
     want = 1 - (1 - loss_pct / 100) ** 2
     lost = 1 - measured["received"] / measured["sent"]
     if abs(lost - want) > DEVIATIONS * (want * (1 - want) / measured["sent"]) ** 0.5:

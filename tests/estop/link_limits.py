@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""What a game needs of a link: plays in real time over links of several qualities, and counts failsafes.
+"""Measures the link quality that a game needs: plays in real time over links of several qualities, and counts
+failsafes.
 
     link_limits.py SQUALL OUT --far agents --transport quic --delay-ms 300 --loss-pct 5 --for-s 600
 
-Two machines are joined by a bad link (bad_link.py). One runs the sim. `--far` says who is on the other: the agents, or
-the gateways with their emulated boats. The two real boats of `mixed_2v2` arm themselves once, so the first failsafe of
-each stays. Prints one JSON line: the time under way without a failsafe, failsafes, and the traffic of each boat.
-Linux, root, Python 3.9, no packages.
+Two machines are joined by a bad link (bad_link.py). One runs the sim. `--far` selects what runs on the other: the
+agents, or the gateways with their emulated boats. The two real boats of `mixed_2v2` arm themselves once, so the first
+failsafe of each stays. Prints one JSON line: the time under way without a failsafe, failsafes, and the traffic of each
+boat. Linux, root, Python 3.9, no packages.
 """
 
 import argparse
@@ -32,12 +33,12 @@ class Play:
         self.agents_at = FAR if args.far == "agents" else NEAR
 
     def squall(self, name, machine, *words):
-        # Before everything else on this computer: the link is measured, not its load.
+        # With priority over everything else on this computer: the link is measured, not the load.
         return self.machines.start(name, machine, ["nice", "-n", "-15", self.args.squall, *words],
                                    SQUALL_TOKEN=self.token)
 
     def start(self):
-        """Everything, up to boats under way; returns the gateways."""
+        """Starts everything, until boats are under way; returns the gateways."""
         scenario = self.machines.out / "links.toml"
         keys = f"duration_s = 86400.0\norder_ttl_s = {self.args.order_ttl_s}\n"
         scenario.write_text(f'base = "{ROOT}/scenarios/games/mixed_2v2.toml"\n{keys}', encoding="utf-8")
@@ -116,7 +117,7 @@ def main():
     parser.add_argument("--far", choices=("agents", "gateways"), default="agents")
     parser.add_argument("--transport", choices=("tcp", "quic"), default="quic")
     parser.add_argument("--delay-ms", type=float, default=0.0, help="one-way delay [0]")
-    parser.add_argument("--loss-pct", type=float, default=0.0, help="share of packets that are lost [0]")
+    parser.add_argument("--loss-pct", type=float, default=0.0, help="percentage of packets that are lost [0]")
     parser.add_argument("--rate-kbit", type=float, help="rate limit of each direction [none]")
     parser.add_argument("--for-s", type=float, default=60.0, help="how long to play [60]")
     parser.add_argument("--order-ttl-s", type=float, default=1.0, help="order_ttl_s of game and gateways [1]")

@@ -13,18 +13,18 @@ from pathlib import Path
 from priority import run_at_once
 
 HERE = Path(__file__).resolve().parent
-# How long a program may take to end when it is asked to, s.
+# How long a program may take to end when asked to, s.
 END_S = 10.0
 PR_SET_PDEATHSIG = 1
 LIBC = ctypes.CDLL(None)
 
 
 class Unavailable(Exception):
-    """Namespaces or TUN devices cannot be made here; says why."""
+    """Namespaces or TUN devices cannot be created here; gives the reason."""
 
 
 class Program:
-    """A program on a machine. What it prints is kept, line by line, with the time at which it came."""
+    """A program on a machine. Its output is kept line by line, with times of arrival."""
 
     def __init__(self, name, words, env, log):
         self.name = name
@@ -46,7 +46,7 @@ class Program:
                 self.news.notify_all()
 
     def write(self, line):
-        """Gives it a line; returns the monotonic time just before, ns."""
+        """Sends it a line; returns the monotonic time just before, ns."""
         at_ns = time.monotonic_ns()
         self.child.stdin.write(line.encode() + b"\n")
         self.child.stdin.flush()
@@ -58,7 +58,7 @@ class Program:
             return len(self.lines)
 
     def find(self, wanted, limit_s, mark=0):
-        """The time and the text of the first line after `mark` for which `wanted` holds; None if none comes in time."""
+        """The time and the text of the first line after `mark` for which `wanted` holds; None if none arrives in time."""
         until = time.monotonic() + limit_s
         with self.news:
             while True:
@@ -71,11 +71,11 @@ class Program:
                     return None
 
     def request(self, line, limit_s=30.0, ends=lambda _: True):
-        """Gives it a line, and returns the lines of its answer."""
+        """Sends it a line, and returns the lines of its reply."""
         mark = self.mark()
         self.write(line)
         if self.find(ends, limit_s, mark) is None:
-            raise RuntimeError(f"{self.name} does not answer {line!r} within {limit_s:.0f} s")
+            raise RuntimeError(f"{self.name} does not reply to {line!r} within {limit_s:.0f} s")
         with self.news:
             return [line for _, line in self.lines[mark:]]
 
@@ -84,9 +84,9 @@ class Program:
             self.child.send_signal(number)
 
     def end(self, number=signal.SIGINT):
-        """Asks it to end, and kills it if it does not; returns its exit code. Without a signal it has been asked already."""
+        """Asks it to end, and kills it if it does not; returns its exit code. Without a signal, it has already been asked."""
         if number is not None:
-            # A suspended program hears nothing.
+            # A suspended program receives nothing.
             self.send_signal(signal.SIGCONT)
             self.send_signal(number)
         try:
@@ -113,7 +113,7 @@ class Machines:
 
     def __init__(self, names, out, seed):
         self.out = out
-        # Names are unique on this machine, so that tests at the same time do not meet.
+        # Names are unique on this machine, so that concurrent tests do not interfere.
         self.namespaces = {name: f"squall-estop-{os.getpid()}-{name}" for name in names}
         self.addresses = {name: f"10.77.0.{number}" for number, name in enumerate(names, 1)}
         self.seed = seed
@@ -150,13 +150,13 @@ class Machines:
         return ["ip", "netns", "exec", self.namespaces[machine], *map(str, words)]
 
     def env(self, machine, **more):
-        """The environment of programs on a machine: games and gateways are registered there alone."""
+        """The environment of programs on a machine: games and gateways are registered only there."""
         folder = self.out / machine
         folder.mkdir(mode=0o700, exist_ok=True)
         return {**os.environ, "XDG_RUNTIME_DIR": str(folder), **more}
 
     def start(self, name, machine, words, **more):
-        """Starts a program that stays."""
+        """Starts a long-running program."""
         program = Program(name, self.words(machine, words), self.env(machine, **more), self.out / f"{name}.log")
         self.programs.append(program)
         return program
@@ -167,7 +167,7 @@ class Machines:
         return program.end(number)
 
     def tell_link(self, *words):
-        """Gives the link a command, which must be obeyed."""
+        """Sends the link a command, which must succeed."""
         answer = self.link.request(" ".join(map(str, words)))
         if answer != ["ok"]:
             raise RuntimeError(f"the link: {answer}")
@@ -191,7 +191,7 @@ def run_ip(*words):
 
 
 def must_be_possible():
-    """Raises `Unavailable` where machines cannot be made."""
+    """Raises `Unavailable` where machines cannot be created."""
     if os.geteuid() != 0:
         raise Unavailable("network namespaces and TUN devices need root")
     if not os.path.exists("/dev/net/tun"):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""What a busy machine does to a measurement: real-time priority for the clock, and a watch on stalls.
+"""The effect of a busy machine on measurements: real-time priority for the clock, and a watch for stalls.
 
-As a program it prints `stall END_NS LATE_MS` whenever an ordinary process that sleeps is woken late: for so long the
-programs under test have not run either.
+As a program it prints `stall END_NS LATE_MS` whenever an ordinary process that sleeps is woken late: the programs under
+test have not run for that long either.
 """
 
 import os
@@ -10,12 +10,12 @@ import sys
 import time
 
 EVERY_S = 0.002
-# Less is every machine's own, ms.
+# Shorter stalls occur on every machine, ms.
 STALL_MS = 5.0
 
 
 def run_at_once():
-    """Runs this thread before all ordinary ones. Its children and later threads are ordinary again."""
+    """Runs this thread with priority over all ordinary ones. Its children and later threads are ordinary again."""
     try:
         os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(1))
     except OSError as error:

@@ -15,16 +15,16 @@ BOATS = ("blue_one", "red_one")
 CONSOLE, SIM, BOAT = MACHINES = ("console", "sim", "boat")
 GAME, PORT = "estop", 7447
 STANDBY = "L"
-# How long programs may take to come up, and boats to be armed, s.
+# How long programs may take to start, and boats to be armed, s.
 START_S, ARM_S = 60.0, 15.0
 # How long the release of the fleet may take, s.
 RELEASE_S = 1.0
-# A boat that has not been sent standby by then never was, s.
+# A boat that has not been sent standby by then counts as never stopped, s.
 NEVER_S = 5.0
 
 
 class Rig:
-    """Everything that a stop needs but the operator."""
+    """Everything that a stop needs except the operator."""
 
     def __init__(self, machines, squall, stranger_python):
         self.machines = machines
@@ -33,7 +33,7 @@ class Rig:
         self.token = secrets.token_hex(32)
         self.endpoint = f"tcp/{machines.addresses[SIM]}:{PORT}"
         self.control = {boat: f"{machines.addresses[BOAT]}:{8101 + i}" for i, boat in enumerate(BOATS)}
-        # Lines of the boats' machine that have been taken up, the newest command to each boat, and its standbys.
+        # Lines of the boats' machine processed so far, the newest command to each boat, and its standbys.
         self.seen = 0
         self.last_mode = dict.fromkeys(BOATS, STANDBY)
         self.standbys = {boat: [] for boat in BOATS}
@@ -105,10 +105,10 @@ class Rig:
             if holds():
                 return
             time.sleep(0.05)
-        raise RuntimeError(f"not within {limit_s:.0f} s: {what}; see {self.machines.out}")
+        raise RuntimeError(f"{what}: not within {limit_s:.0f} s; see {self.machines.out}")
 
     def ask(self, boat, command):
-        """The reply of a boat's gateway, asked on its own machine."""
+        """The reply of a boat's gateway to a query on its own machine."""
         return self.request(boat, {"boat": {"name": boat, "command": command}})
 
     def request(self, boat, body):
@@ -116,7 +116,7 @@ class Rig:
         self.boat_side.write(json.dumps({"boat": boat, "body": body}))
         found = self.boat_side.find(lambda line: line.startswith("reply "), START_S, mark)
         if found is None:
-            raise RuntimeError("the boats' machine does not answer")
+            raise RuntimeError("the boats' machine does not respond")
         return json.loads(found[1].removeprefix("reply "))
 
     def state(self, boat):
@@ -124,7 +124,7 @@ class Rig:
         return status["state"] if status else "unknown"
 
     def read_wire(self):
-        """Takes up what the boats have been sent."""
+        """Processes the commands sent to the boats."""
         with self.boat_side.news:
             lines, self.seen = self.boat_side.lines[self.seen:], len(self.boat_side.lines)
         for _, line in lines:
@@ -143,7 +143,7 @@ class Rig:
         return self.last_mode[boat] == STANDBY
 
     def standby_after(self, boat, from_ns, limit_s):
-        """When a boat is next sent standby, ns; None if it is not within this time from now."""
+        """When a boat is next sent standby, ns; None if not within this time from now."""
         until = time.monotonic() + limit_s
         while True:
             self.read_wire()
@@ -170,7 +170,7 @@ class Rig:
                     if not self.is_standing(boat):
                         return True
                 elif "fleet" in state:
-                    # A copy of a stop of the fleet came after the release.
+                    # A copy of a stop of the fleet arrived after the release.
                     self.stops_after_release += 1
                     self.tell(SIM, "all", "release")
                     time.sleep(RELEASE_S)
@@ -190,12 +190,12 @@ class Rig:
         while left := [state for state in states() if state.startswith("e-stopped")]:
             if time.monotonic() >= until:
                 raise RuntimeError(f"not released within {START_S:.0f} s: {', '.join(boats)}; see {self.machines.out}")
-            # A release may take its time to reach the gateways.
+            # A release may take some time to reach the gateways.
             if any("fleet" in state for state in left) and time.monotonic() >= release_at_s:
                 release_fleet()
                 releases += 1
                 release_at_s = time.monotonic() + RELEASE_S
-        # A copy of a stop of the fleet that comes after the release is in force again.
+        # A copy of a stop of the fleet that arrives after the release takes effect again.
         self.stops_after_release += releases > (len(boats) > 1)
 
     def tell(self, machine, *words):

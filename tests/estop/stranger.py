@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A stranger who reaches the game's port, and has neither its token nor its keys.
+"""A stranger who can reach the game's port but has neither its token nor its keys.
 
     stranger.py flood ENDPOINT GAME CONTROL_ADDRESS ...   floods the game's port, and the control ports
-    stranger.py forge ENDPOINT GAME BOAT ...              says that boats are stopped, in their gateways' place
+    stranger.py forge ENDPOINT GAME BOAT ...              reports, in place of their gateways, that boats are stopped
 
-It goes on until it is ended, and reports each second what it has done. Publishing needs the package eclipse-zenoh; without
-it, `flood` sends bytes only, and `forge` ends.
+It continues until it is ended, and reports its activity every second. Publishing needs the package eclipse-zenoh;
+without it, `flood` sends only bytes, and `forge` exits.
 """
 
 import json
@@ -48,7 +48,7 @@ class Stranger:
         return self.sessions[-1]
 
     def publish(self, topic, payload, hz=None):
-        """Publishes the same, as fast as the hub takes it or `hz` times a second."""
+        """Publishes the same message, as fast as the hub accepts it or `hz` times a second."""
         session = self.session()
         publisher = session.declare_publisher(self.keys + topic, congestion_control=zenoh.CongestionControl.BLOCK)
         while True:
@@ -66,7 +66,7 @@ class Stranger:
                     out.sendto(garbage, (host, port))
                     self.counts["datagrams"] += 1
                 except OSError:
-                    # Nobody listens there, which an earlier datagram has brought back.
+                    # Nothing is listening there, as reported for an earlier datagram.
                     self.counts["datagrams refused"] += 1
                 time.sleep(1 / hz)
 
@@ -82,7 +82,7 @@ class Stranger:
             time.sleep(1 / hz)
 
     def answer(self, boat, reply):
-        """Answers operators in the place of a boat's gateway, as the only one who needs to be asked."""
+        """Answers operators in place of a boat's gateway, claiming to be the only node that need be queried."""
         key = f"{self.keys}operate/{boat}"
 
         def answered(query):
@@ -127,18 +127,18 @@ def forge(stranger, boats):
 
 
 def status_of(stranger, boat):
-    """What the boat's gateway answers to everybody."""
+    """The boat's gateway's reply to everyone."""
     session = stranger.session()
     for _ in range(20):
         for reply in session.get(f"{stranger.keys}operate/{boat}", payload=b'{"body":"status"}', timeout=3):
             if reply.ok is not None:
                 return json.loads(bytes(reply.ok.payload.to_bytes()))["answer"]["status"]
-    sys.exit(f"no gateway of {boat} answers")
+    sys.exit(f"no gateway of {boat} is responding")
 
 
 def main():
     what, endpoint, game, *others = sys.argv[1:]
-    # A real stranger does not take the processors of the programs under test.
+    # A real stranger does not use the processors of the programs under test.
     run_when_idle()
     stranger = Stranger(endpoint, game)
     # A declaration is withdrawn when it is dropped.

@@ -1,4 +1,4 @@
-//! Conditions that every game must meet, whatever fails.
+//! Conditions that every game must satisfy, whatever fails.
 
 use crate::plan::{FIRST_AGENT, Plan, SIM};
 use crate::play::Played;
@@ -115,7 +115,7 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
     let is_lossy = plan.conditions.loss > 0.0 || plan.conditions.damaged.0 > 0.0;
     let margin = if is_lossy { SENT_OFTEN } else { SENT_AGAIN };
     let enough = plan.patience().saturating_sub(margin);
-    // A suspended sim must not report its agents as lost; a cut of the sim cuts off all the others.
+    // A suspended sim must not report its agents as lost; cutting off the sim cuts off all the others.
     let is_excused = |node: usize| {
         let absent = plan.longest_absence(node, node == SIM);
         absent > Duration::ZERO && absent >= enough
@@ -134,7 +134,7 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
             .index();
         if !is_excused(plan.agent_of(boat)) && !is_excused(SIM) {
             wrong.push(format!(
-                "{name} lost its agent at {} s of the game, which was there",
+                "{name} lost its agent at {} s of the game, although it was connected",
                 event.at_s
             ));
         }
@@ -172,7 +172,7 @@ fn check_presence(plan: &Plan, played: &Played) -> Vec<String> {
                 let late = lost.filter(|(_, last)| *last > all_are_back);
                 if let Some((_, last)) = late.filter(|_| !plan.forges()) {
                     wrong.push(format!(
-                        "boat {boat} has no agent at {last:?}, faults were over at {:?}",
+                        "boat {boat} has no agent at {last:?}, although faults were over at {:?}",
                         plan.faults_end()
                     ));
                 }
@@ -211,9 +211,9 @@ fn check_ends(plan: &Plan, played: &Played) -> Vec<String> {
             .find(|end| end.node == format!("agent {agent}") && !end.was_killed);
         let is_early = end.is_some_and(|end| end.at < sim_ended);
         if is_early && !plan.forges() {
-            wrong.push(format!("agent {agent} gives up during the game: {reason}"));
+            wrong.push(format!("agent {agent} exits during the game: {reason}"));
         } else if plan.faults.is_empty() && !plan.forges() {
-            // Messages get lost even so.
+            // Even so, messages get lost.
             wrong.push(format!(
                 "agent {agent} misses the end of the game: {reason}"
             ));

@@ -12,9 +12,9 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
-/// A boat that sends no byte for this long counts as lost.
+/// A boat that has sent no byte for this long counts as lost.
 const SILENCE: Duration = Duration::from_secs(3);
-/// Duration of connecting.
+/// The time that connecting takes.
 const CONNECT: Duration = Duration::from_millis(100);
 /// How often a link without a boat checks whether to end.
 const POLL: Duration = Duration::from_millis(500);
@@ -55,7 +55,7 @@ pub(crate) fn connect(wire: &Arc<Wire>, vehicle: &str, stop: &Arc<AtomicBool>) {
     match serve_over(&settings, open, &mut notify) {
         // The sim died before the gateway found it.
         Ok(()) | Err(NodeError::NotFound(_)) => {}
-        Err(e) => panic!("the gateway gives up: {e}"),
+        Err(e) => panic!("the gateway fails: {e}"),
     }
 }
 

@@ -1,13 +1,13 @@
 //! Fault injection: whole games between the real nodes, over a simulated network in virtual time,
 //! with random faults.
 //!
-//! A single number determines every game. `SQUALL_FAULT_SEED=7 cargo test --release --test
+//! Each game is determined by a single number. `SQUALL_FAULT_SEED=7 cargo test --release --test
 //! fault_injection -- --nocapture` repeats game 7 and shows its events; `SQUALL_FAULT_GAMES=100000`
 //! plays that many games, starting with number `SQUALL_FAULT_FROM`.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,
-    reason = "how many games a minute are played is measured by the clock, and shown"
+    reason = "measures games per minute by the clock, and prints the result"
 )]
 
 #[path = "../../gateway/tests/closed_loop/boat.rs"]
@@ -114,7 +114,7 @@ fn games_keep_their_guarantees_under_any_network_faults() {
     let took_s = start.elapsed().as_secs_f64();
     let played = next.load(Ordering::Relaxed).min(from + games) - from;
     println!(
-        "{played} games in {took_s:.1} s: {:.0} a minute on {workers} cores",
+        "{played} games in {took_s:.1} s: {:.0} per minute on {workers} cores",
         60.0 * played as f64 / took_s
     );
     println!("traces {:016x}", TRACES.load(Ordering::Relaxed));

@@ -163,7 +163,7 @@ impl Operator<'_> {
         let must_have = was_undisturbed && self.are_undisturbed(&nodes);
         assert!(
             !must_have || !reply.is_some_and(|reply| has_no_orders(&reply)),
-            "no orders come, though nothing is wrong"
+            "no orders arrive, although nothing is wrong"
         );
     }
 
@@ -208,7 +208,7 @@ impl Operator<'_> {
                 && by_page.is_none_or(|at| clock::since(at) > SAID_AGAIN);
             assert!(
                 !is_late,
-                "an E-stop of all that was released is in force: {is_released}, {state:?}"
+                "an E-stop of all boats is in force after its release: {is_released}, {state:?}"
             );
         }
         self.note_release(false);

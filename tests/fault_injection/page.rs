@@ -1,5 +1,4 @@
-//! A page that shows the game and sometimes stops it. It uses the real page server, without browser
-//! and sockets.
+//! A page that shows the game and sometimes stops it. It uses the real page server, without a browser or sockets.
 
 use crate::operator::{PROMISED, RECOVERS};
 use crate::plan::{Plan, SIM};
@@ -63,7 +62,7 @@ impl Shown {
         }
         assert!(
             now < self.at + LATE,
-            "a page has been shown {} frames, and none any more",
+            "a page has received {} frames, but no more now",
             self.frames
         );
     }

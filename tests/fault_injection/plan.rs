@@ -5,7 +5,7 @@ use sim::node::Pace;
 use simulated_network::{Conditions, Damage, Fault};
 use std::time::Duration;
 
-/// The games that are played, from the folder `games`.
+/// The games, from the folder `games`.
 pub(crate) const GAMES: [&str; 5] = ["point_boats", "surveyors", "duel", "talking", "real_boat"];
 
 /// Numbers of the first nodes. Agents follow, then for a real boat its gateway, an operator and the

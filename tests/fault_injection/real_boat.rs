@@ -21,8 +21,8 @@ const WATCHDOG_S: f64 = 2.0;
 pub(crate) const DECLINATION_RAD: f64 = -0.218;
 /// Unread bytes for the gateway beyond this are lost.
 const UNREAD_MAX: usize = 1 << 16;
-/// An order that waits for the gateway's loop is this much older than the oracle assumes, s; an
-/// older one is not used.
+/// An order that waits for the gateway's loop is at most this much older than the oracle assumes, s; an older one is
+/// not used.
 pub(crate) const WAITED_S: f64 = 0.55;
 
 /// The wire between a boat and its gateway.
@@ -110,7 +110,7 @@ impl Wire {
             let must_rest = state.must_rest.is_some_and(|since| clock::now() >= since);
             assert!(
                 !drives || !must_rest,
-                "at {now}: {:?} although somebody has stopped the boat",
+                "at {now}: {:?} although the boat has been stopped",
                 state.oracle.last
             );
             if state.is_whole {
@@ -141,10 +141,7 @@ impl Wire {
     pub(crate) fn note_state(&self, from: &str, to: &str) {
         self.visit(|state, now| {
             if to == "armed" {
-                assert!(
-                    state.arms_left > 0,
-                    "at {now}: armed, and nobody asked for it"
-                );
+                assert!(state.arms_left > 0, "at {now}: armed without a request");
                 state.arms_left -= 1;
             }
             state.is_armed = to == "armed" || (state.is_armed && from != "armed");

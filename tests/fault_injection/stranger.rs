@@ -10,7 +10,7 @@ use primitives::stream::Stream;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The invented state.
+/// The state that the stranger makes up.
 pub(crate) const FORGED: &str = "forged";
 /// When the stranger appears.
 pub(crate) const BEGINS: Duration = Duration::from_millis(500);
@@ -23,7 +23,7 @@ const LATE: Duration = Duration::from_secs(3);
 /// Maximum number of proofs and queries kept.
 const KEPT_MAX: usize = 16;
 
-/// Overheard proofs, and when.
+/// Overheard proofs, with their times.
 type Proofs = Mutex<Vec<(std::time::Instant, Vec<u8>)>>;
 
 /// Attacks the game, as far as the hub allows, until it is over.

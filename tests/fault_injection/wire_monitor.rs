@@ -9,8 +9,8 @@ use sim::node::Pace;
 use simulated_network::Published;
 use std::time::Duration;
 
-/// A boat that must hold has stopped its thrusters after this much simulated time: they change by a
-/// fifth of their range a second, with a lag of 0.25 s.
+/// A boat that must hold has stopped its thrusters after this much simulated time: they change by a fifth of their
+/// range per second, with a lag of 0.25 s.
 const SETTLES_S: f64 = 6.5;
 /// A real boat that has joined is reported at least this often, whatever the pauses.
 const UNREPORTED: Duration = Duration::from_secs(2);
@@ -102,7 +102,7 @@ impl WireMonitor {
         // order must be fresh.
         if age_s > self.order_ttl_s && order.order() != Some(Order::Hold) {
             self.wrong.push(format!(
-                "at {} an order {age_s:.2} s old goes to a real boat",
+                "at {} an order {age_s:.2} s old is sent to a real boat",
                 stamp.valid_ns
             ));
         }
@@ -116,7 +116,7 @@ impl WireMonitor {
             .is_some_and(|back| at > back + UNREPORTED && at > self.reported + UNREPORTED)
         {
             self.wrong.push(format!(
-                "at {at:?} the real boat is not reported since {:?}",
+                "at {at:?} the real boat has not been reported since {:?}",
                 self.reported
             ));
             self.is_back = None;

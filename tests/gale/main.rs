@@ -5,10 +5,7 @@
 //! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` simulates
 //! a day with four boats; the default is half an hour.
 
-#![expect(
-    clippy::print_stdout,
-    reason = "measurements are shown when it is run by hand"
-)]
+#![expect(clippy::print_stdout, reason = "prints measurements when run by hand")]
 
 use gateway::bridge::{Bridge, Event, Input, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, FrontSeat, Port};
@@ -37,7 +34,7 @@ const BOATS: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// The compass reads this much too low, rad.
+    /// The compass reads too low by this much, rad.
     CompassOff(f64),
     /// The compass reading never changes.
     CompassFrozen,

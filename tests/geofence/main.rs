@@ -1,13 +1,10 @@
-//! The Surveyor of the boat files approaches its geofence at every speed, in every shipped sea; the
-//! watch stops it in time: it comes to rest inside.
+//! The Surveyor of the boat files approaches its geofence at every speed, in every shipped sea. The watch stops it in
+//! time for it to come to rest inside.
 //!
 //! `SQUALL_APPROACHES=10000 cargo test --locked --release --workspace --test geofence --
 //! --nocapture` runs more.
 
-#![expect(
-    clippy::print_stdout,
-    reason = "measurements are shown when it is run by hand"
-)]
+#![expect(clippy::print_stdout, reason = "prints measurements when run by hand")]
 
 use gateway::config::default_gateway;
 use gateway::geofence::{Coasting, GeofenceWatch};
@@ -27,17 +24,15 @@ use trial::{Command, Sample, Start, TrialBoat, open_field};
 
 /// The simulated water's tick; the gateway runs in every second one.
 const TICK: SimTime = SimTime(50_000_000);
-/// A fix is this old when the gateway has it, and a command on its way this long, in ticks: 0.2 s
-/// and 0.1 s.
+/// The age of a fix when the gateway receives it, and the time that a command is in transit, in ticks: 0.2 s and 0.1 s.
 const FIX_TICKS: usize = 4;
 const COMMAND_TICKS: u32 = 2;
 /// The edge of the geofence lies this far north of the middle of the field, m.
 const EDGE_M: f64 = 500.0;
-/// A boat that was stopped is watched for this long, s: on water at rest until it lies still;
-/// elsewhere it drifts on.
+/// A stopped boat is observed for this long, s: on water at rest, until it lies still; elsewhere it continues to drift.
 const STILL_S: f64 = 60.0;
 const DRIFTING_S: f64 = 20.0;
-/// An approach that has not come to the edge by then is over, s.
+/// An approach that has not reached the edge by this time ends, s.
 const LONGEST_S: f64 = 150.0;
 
 /// An approach: how fast, on which heading, from how far.

@@ -1,5 +1,5 @@
-//! A boat with no node but its gateway, or not even that: it can be stopped without a sim, and it
-//! stops when its gateway dies.
+//! A boat with no node but its gateway, or without even that: it can be stopped without a sim, and it stops when its
+//! gateway dies.
 
 use crate::gateway::Water;
 use crate::support::{
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 /// busy machine.
 const STOPS: Duration = Duration::from_millis(3300 + 1500);
 
-/// Water with an emulated boat that has no watchdog: it follows the last command for ever.
+/// Water with an emulated boat that has no watchdog: it follows the last command forever.
 struct Afloat {
     /// The name of a game that does not exist.
     game: &'static str,
@@ -45,7 +45,7 @@ impl Afloat {
         wait_within(LIMIT, "the boat sails", || !self.is_still());
         drop(stream);
         std::thread::sleep(Duration::from_secs(2));
-        assert!(!self.is_still(), "it goes on without anybody");
+        assert!(!self.is_still(), "it continues with no program connected");
     }
 
     fn is_still(&self) -> bool {
@@ -55,7 +55,7 @@ impl Afloat {
     fn stops(&self) {
         wait_within(STOPS, "the thrusters stand still", || self.is_still());
         std::thread::sleep(Duration::from_secs(1));
-        assert!(self.is_still(), "it goes on again");
+        assert!(self.is_still(), "it drives again");
     }
 
     /// The command for a gateway whose game has no other node.
@@ -88,7 +88,7 @@ pub(crate) fn tell(game: &str, command: &str) -> String {
     let told = format!("{}{}", stdout(&output), stderr(&output));
     assert!(
         !told.contains('\x1b') && !told.contains("u001b"),
-        "colours where there is no terminal: {told}"
+        "colours without a terminal: {told}"
     );
     told
 }
@@ -119,7 +119,7 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     assert!(!output.status.success());
     let said = stderr(&output);
     assert!(
-        said.contains("another gateway on this machine has the link"),
+        said.contains("another gateway on this machine holds the link"),
         "{said}"
     );
     assert!(afloat.tell("status").contains("disarmed"));
@@ -127,7 +127,7 @@ fn a_gateway_stops_its_boat_and_serves_operators_before_there_is_a_game() {
     let output = run(&["gateway", "stop", &afloat.link]);
     assert!(
         output.status.success()
-            && stdout(&output).contains("the gateway of blue_one has the link: e-stopped")
+            && stdout(&output).contains("the gateway of blue_one holds the link: e-stopped")
     );
     gateway.signal("TERM");
     assert!(gateway.wait().success());

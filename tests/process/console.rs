@@ -1,4 +1,4 @@
-//! The operator console: stops take every path, and are complete when the boats report them.
+//! The operator console: stops take every path, and count as complete when the boats report them.
 
 use crate::boat_alone::Wire;
 use crate::support::{LIMIT, Process, Sim, gateway_args, printed_by, refused, temporary};
@@ -109,7 +109,7 @@ impl Console {
             let line = self
                 .lines
                 .recv_timeout(LIMIT.saturating_sub(start.elapsed()));
-            let line = line.unwrap_or_else(|_| panic!("{left:?} is not said: {all:?}"));
+            let line = line.unwrap_or_else(|_| panic!("{left:?} is not printed: {all:?}"));
             if let Some(i) = left
                 .iter()
                 .position(|beginning| line.starts_with(beginning))
@@ -183,7 +183,7 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     console.say("all release");
     console.wait_for(&["red_one  disarmed"]);
     console.say("blue_one arm");
-    console.wait_for_complaint("blue_one refuses: an E-stop of this boat");
+    console.wait_for_complaint("refused by blue_one: an E-stop of this boat");
     console.ask("blue_one release", &["blue_one  disarmed  after "]);
     console.ask("red_one disarm", &ALL_DISARMED[1..]);
     console.ask("all disarm", &ALL_DISARMED);
@@ -191,7 +191,7 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     let (status, said) = console.end();
     assert!(status.success(), "{said}");
     assert!(
-        said.contains("dance") && said.contains("blue_one refuses: an E-stop of this boat"),
+        said.contains("dance") && said.contains("refused by blue_one: an E-stop of this boat"),
         "{said}"
     );
 }

@@ -1,4 +1,4 @@
-//! SIGTERM ends every command that runs for long.
+//! SIGTERM ends every long-running command.
 
 use crate::support::{Process, Sim, own, printed, squall, temporary};
 use std::net::TcpListener;

@@ -54,10 +54,10 @@ impl Gateway {
         };
         let standing = bus
             .subscribe(topic::external_order(&name, &scenario, ME), take)
-            .expect("the hub is there");
+            .expect("the hub is up");
         let nav = bus
             .publisher(topic::nav(&name, &scenario, ME), Priority::Normal)
-            .expect("the hub is there");
+            .expect("the hub is up");
         let JoinReply::Granted {
             ticket, vehicles, ..
         } = join(&bus, (&name, &scenario), &request(&bus, "blue_one"))
@@ -141,10 +141,10 @@ impl Gateway {
             age_ns: 0,
             nav: self.at,
         };
-        self.nav.send(&report).expect("the hub is there");
+        self.nav.send(&report).expect("the hub is up");
     }
 
-    /// Runs on until a condition is true.
+    /// Continues until a condition is true.
     fn sail_until(&mut self, what: &str, is_so: impl Fn(&Gateway) -> bool) {
         wait_until(what, || {
             is_so(self) || {
@@ -172,14 +172,14 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     assert_eq!(
         gateway.join(&other, "blue_one"),
         busy,
-        "somebody else brings it"
+        "another gateway provides it"
     );
     let JoinReply::Refused { reason } = gateway.join(&other, "red_one") else {
         panic!("it is simulated")
     };
     assert!(reason.contains("red_one is simulated"), "{reason}");
 
-    gateway.sail_until("its agent takes it towards the flag", |gateway| {
+    gateway.sail_until("its agent steers it towards the flag", |gateway| {
         gateway.at.east_m > 70.0
     });
     let orders = gateway.orders.lock().expect("whole").clone();
@@ -187,7 +187,7 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
         orders
             .iter()
             .any(|order| order.given_ns > orders[0].given_ns),
-        "its agent goes on deciding"
+        "its agent continues to decide"
     );
     assert!(
         orders
@@ -197,11 +197,13 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
 
     // The gateway stops reporting, then resumes.
     sim.wait_for_event("nav_lost", "blue_one");
-    wait_until("a lost boat is sent a hold", || gateway.is_held());
-    gateway.sail_until("what is back is driven again", |gateway| !gateway.is_held());
+    wait_until("a lost boat is sent a hold order", || gateway.is_held());
+    gateway.sail_until("a boat that is back is driven again", |gateway| {
+        !gateway.is_held()
+    });
     sim.wait_for_event("nav_back", "blue_one");
     let before = gateway.newest().expect("an order").given_ns;
-    gateway.sail_until("its agent goes on", |gateway| {
+    gateway.sail_until("its agent continues", |gateway| {
         gateway
             .newest()
             .is_some_and(|newest| newest.given_ns > before)
@@ -213,7 +215,7 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     sim.wait_for_event("agent_lost", "blue_one");
     let count = gateway.received();
     let given_ns = gateway.newest().expect("an order").given_ns;
-    gateway.sail_until("it is sent the hold again", |gateway| {
+    gateway.sail_until("it is sent the hold order again", |gateway| {
         gateway.received() > count + 3
     });
     assert!(
@@ -231,7 +233,7 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
     let nav = topic::nav(&gateway.name, &gateway.scenario, ME);
     gateway.nav = other
         .publisher(nav, Priority::Normal)
-        .expect("the hub is there");
+        .expect("the hub is up");
     gateway.report(gateway.ticket);
     sim.play_on(1.0);
     let report = sim.stop();

@@ -1,4 +1,4 @@
-//! Nodes that die or fall silent: the game goes on, and no node waits for ever.
+//! Nodes that die or fall silent: the game continues, and no node waits forever.
 
 use crate::support::{FOUR, Process, Sim, squall};
 use std::time::Instant;
@@ -44,7 +44,7 @@ fn a_killed_agents_boat_holds_until_a_new_agent_takes_over() {
         );
         assert!(
             agents.iter_mut().all(|agent| agent.wait().success()),
-            "{pace}: they leave in peace"
+            "{pace}: they leave without an error"
         );
     }
 }
@@ -109,7 +109,7 @@ fn a_taken_seat_stays_taken() {
     let (sim, _agents) = game("lockstep");
     let said = sim.refusal_of(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
     assert!(said.contains("blue_one has another agent"), "{said}");
-    // A vehicle that is not there has none.
+    // A vehicle that does not exist has none.
     let said = sim.refusal_of(&["agent", "--vehicle", "green_one"]);
     assert!(
         said.contains("green_one") && said.contains("blue_one, blue_two, red_one, red_two"),

@@ -34,7 +34,7 @@ fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
         digests.push(here["digest"].clone());
     }
     digests.dedup();
-    assert_eq!(digests.len(), 3, "each is another game");
+    assert_eq!(digests.len(), 3, "each is a different game");
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn the_first_game_of_the_readme_runs_to_its_end() {
     );
     assert!(
         result["counts"]["teams"]["blue"]["grabs"].as_u64() > Some(0),
-        "somebody reached a flag"
+        "a boat reached a flag"
     );
 }
 
@@ -124,7 +124,7 @@ fn agents_may_come_before_the_sim_and_in_any_order() {
     for agent in &mut agents {
         assert!(
             agent.wait().success(),
-            "an agent leaves in peace when the game ends"
+            "an agent leaves without an error when the game ends"
         );
     }
 }
@@ -159,7 +159,7 @@ fn a_run_that_is_ended_early_leaves_nothing_behind() {
         let status = run.wait();
         assert!(
             !status.success(),
-            "{signal}: a game that was cut short is no success"
+            "{signal}: a game that was cut short is not a success"
         );
         let is_there = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
         wait_until(&format!("after {signal} all of {family:?} end"), || {
@@ -193,7 +193,7 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
     let (mut watch, mut lines) =
         Process::with_lines(squall(&["watch", "--game", &sim.game, "--rate", "20"]));
     for _ in 0..3 {
-        let line = lines.next().expect("it goes on");
+        let line = lines.next().expect("it continues");
         assert!(line.contains("blue") && line.contains("frames/s"), "{line}");
     }
     sim.stop();
@@ -213,7 +213,7 @@ fn a_game_is_not_registered_in_a_folder_that_another_user_could_have_linked() {
     sim.env("XDG_RUNTIME_DIR", dir.path());
     let said = all_output(sim);
     assert!(
-        said.contains("found by its address only") && said.contains("squall is a link"),
+        said.contains("can be found only by its address") && said.contains("squall is a link"),
         "{said}"
     );
     assert_eq!(

@@ -24,8 +24,8 @@ use std::time::{Duration, Instant};
 /// Margin on a busy machine beyond the documented time.
 const SLACK: Duration = Duration::from_millis(1500);
 
-/// A thruster that is commanded to stop changes by a fifth of its range a second, with a lag of
-/// 0.25 s: from 70 % it gives less than this after 3.5 + 1.1 s.
+/// A thruster that is commanded to stop changes by a fifth of its range per second, with a lag of 0.25 s: from 70 % it
+/// gives less than this after 3.5 + 1.1 s.
 const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
 
@@ -161,7 +161,7 @@ impl Loop {
         );
         for _ in 0..20 {
             std::thread::sleep(Duration::from_millis(100));
-            assert!(self.boat().1, "it goes on again");
+            assert!(self.boat().1, "it drives again");
         }
         took
     }
@@ -174,7 +174,7 @@ impl Loop {
         let bus = self.sim.bus();
         let key = topic::operate(&self.sim.name(), "blue_one");
         bus.request_node(&key, command, Duration::from_secs(10))
-            .expect("the hub is there")
+            .expect("the hub is up")
     }
 
     pub(crate) fn status(&self) -> GatewayStatus {
@@ -257,7 +257,7 @@ impl Loop {
         self.gateway.signal("STOP");
         self.stops_within(Duration::from_millis(500));
         self.gateway.signal("CONT");
-        wait_until("it says what happened", || {
+        wait_until("it reports what happened", || {
             !self.status().failsafes.is_empty()
         });
         let failsafes = self.status().failsafes;
@@ -271,7 +271,7 @@ impl Loop {
 
     fn stays_at_rest(&self) {
         std::thread::sleep(Duration::from_secs(1));
-        assert!(self.boat().1, "it does not go on by itself");
+        assert!(self.boat().1, "it does not continue by itself");
     }
 }
 
@@ -350,7 +350,7 @@ fn a_gateway_that_cannot_record_exits_with_the_reason_and_leaves_the_boat_alone(
     let link = format!("tcp://{}", boat.local_addr().expect("it is bound"));
     let [taken, nowhere, full] =
         ["taken.mcap", "nowhere/x.mcap", "full.mcap"].map(|name| dir.path().join(name));
-    std::fs::write(&taken, "of the run before").expect("a file can be written");
+    std::fs::write(&taken, "of the previous run").expect("a file can be written");
     for (path, blocks, reason) in [
         (&taken, 2048, "File exists"),
         (&nowhere, 2048, "No such file"),
@@ -371,11 +371,11 @@ fn a_gateway_that_cannot_record_exits_with_the_reason_and_leaves_the_boat_alone(
     }
     assert_eq!(
         std::fs::read_to_string(&taken).expect("it is there"),
-        "of the run before"
+        "of the previous run"
     );
     assert!(
         !full.exists(),
-        "nothing is left of a recording that did not begin"
+        "a recording that did not begin leaves nothing behind"
     );
 }
 
@@ -409,7 +409,7 @@ fn gateways_that_could_not_record_begin_no_game() {
     let dir = temporary();
     let gateways = "scenarios/gateways/emulated.toml";
     let file = dir.path().join("blue_one.mcap").display().to_string();
-    std::fs::write(&file, "of the run before").expect("a file can be written");
+    std::fs::write(&file, "of the previous run").expect("a file can be written");
     let records = dir.path().display().to_string();
     let args = ["run", MIXED, "--emulate", "--pace", "10x", "--no-record"];
     let said = refusal_of(

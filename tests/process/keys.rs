@@ -47,7 +47,7 @@ fn a_game_with_keys_is_the_game_in_one_process_byte_for_byte() {
     let (_dir, folder) = keys();
     let game = own("seeded_3v3");
     let here = game_itself(result_of(&[&game, "--in-process"]));
-    // With keys each process serves one team; four boats a process would mix teams.
+    // With keys each process serves one team; four boats per process would mix teams.
     let there = game_itself(result_of(&[
         &game,
         "--keys",
@@ -126,7 +126,7 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
     let is_running =
         || ask(None, OperatorCommand::Disarm).is_ok_and(|reply| reply.refused.is_none());
     wait_until(
-        "the gateway has joined, and takes stops of anybody",
+        "the gateway has joined, and accepts stops from anyone",
         is_running,
     );
     assert!(matches!(
@@ -146,7 +146,7 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
         .and_then(|entry| entry.token)
         .expect("it is where this user finds it");
     let reply = ask(Some(&token.parse().expect("a token")), OperatorCommand::Arm).expect("it may");
-    assert!(reply.refused.is_some(), "but the boat says nothing");
+    assert!(reply.refused.is_some(), "but the boat sends nothing");
     sim.stop();
 }
 

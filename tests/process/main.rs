@@ -1,8 +1,8 @@
-//! The program as users run it: whole games across processes, and the failure of parts of them.
+//! The program as users run it: whole games across processes, with failures of single nodes.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,
-    reason = "processes are waited for by the clock, with a limit; a test that is skipped says so"
+    reason = "waits for processes by the clock, with a limit; reports skipped tests"
 )]
 
 mod boat_alone;

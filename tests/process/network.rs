@@ -1,4 +1,4 @@
-//! Network faults: cut links, stopped nodes, floods. Nodes that are not affected notice nothing.
+//! Network faults: cut links, stopped nodes, floods. Unaffected nodes notice nothing.
 
 use crate::external::{FACTOR, Gateway, ME};
 use crate::proxy::{Proxy, STALL};
@@ -20,7 +20,7 @@ const AFTERMATH: Duration = Duration::from_secs(25);
 /// A game that reports no progress for this long has stopped. It reports ten times a second; the
 /// rest allows for a busy machine.
 const STANDSTILL: Duration = Duration::from_millis(1500);
-/// Both paces: as fast as possible, and by the clock, where no node is waited for.
+/// Both paces: as fast as possible, and by the clock, which waits for no node.
 const PACES: [&str; 2] = ["lockstep", "200x"];
 
 /// A game with an agent for each boat, in a sim with as few threads as under `squall run`.
@@ -61,7 +61,7 @@ fn observer(endpoint: &str, game: &str) -> Process {
     ]))
 }
 
-/// Checks that the game goes on without a pause and loses no more agents.
+/// Checks that the game continues without a pause and loses no more agents.
 fn expect_undisturbed(sim: &Sim, what: &str) {
     let start = Instant::now();
     let mut since = start;
@@ -165,7 +165,7 @@ fn a_resumed_sim_blames_no_node_and_plays_the_same_game() {
     );
     assert!(
         agents.iter_mut().all(|agent| agent.wait().success()),
-        "they leave in peace"
+        "they leave without an error"
     );
 }
 
@@ -215,7 +215,7 @@ fn a_sim_with_unread_output_continues() {
         ..Net::default()
     };
     let mut bus = None;
-    wait_until("the hub is there", || {
+    wait_until("the hub is up", || {
         bus = Bus::leaf(&net).ok();
         bus.is_some()
     });
@@ -239,7 +239,7 @@ fn a_sim_with_unread_output_continues() {
     // Every operator request is reported at once: in total more than a pipe of 64 kB holds.
     for i in 0..2000 {
         let speed = Control::Speed(Some(if i % 2 == 0 { 900.0 } else { 1000.0 }));
-        bus::control(&bus, &name, speed).expect("it goes at that speed");
+        bus::control(&bus, &name, speed).expect("it runs at that speed");
     }
     play_on();
     play_on();
@@ -290,23 +290,23 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
         let _ = sender.send((Instant::now(), order.order.order() == Some(Order::Hold)));
     };
     let key = topic::external_order(&name, &scenario, ME);
-    let _orders = bus.subscribe(key, take).expect("the hub is there");
+    let _orders = bus.subscribe(key, take).expect("the hub is up");
     let stop = operator
         .publisher(topic::control(&name), Priority::Urgent)
-        .expect("the hub is there");
+        .expect("the hub is up");
     ordered(&orders, &mut gateway, false);
     // Each flood occupies a receiving thread.
     let _floods = [flood(&sim), flood(&sim)];
     let refused = |sim: &Sim| sim.newest_progress()["refused"].as_u64().expect("a number");
     let before = refused(&sim);
-    wait_until("the flood has come", || refused(&sim) > before + 10_000);
+    wait_until("the flood has arrived", || refused(&sim) > before + 10_000);
     for _ in 0..100 {
         driven(&orders, &mut gateway);
         let sent = Instant::now();
         stop.send_json(b"\"e_stop\"".to_vec()).expect("a session");
         let took = ordered(&orders, &mut gateway, true).duration_since(sent);
         assert!(took < PROMISED, "it takes {took:?}");
-        bus::control(&operator, &name, Control::Release).expect("it goes on");
+        bus::control(&operator, &name, Control::Release).expect("it continues");
     }
     sim.stop();
 }
@@ -323,7 +323,7 @@ fn flood(sim: &Sim) -> Process {
 const FLOODED: &str = "SQUALL_FLOODED_GAME";
 
 #[test]
-#[ignore = "the other end of a test, in a process of its own"]
+#[ignore = "the other end of a test, in its own process"]
 fn floods_a_game() {
     let flooded = std::env::var(FLOODED).unwrap_or_default();
     let Some((endpoint, game)) = flooded.split_once(' ') else {
@@ -334,15 +334,12 @@ fn floods_a_game() {
         connect: vec![endpoint.to_owned()],
         ..Net::default()
     })
-    .expect("the hub is there");
+    .expect("the hub is up");
     let keys = [
         topic::matching(&name, "order/stranger"),
         topic::control(&name),
     ];
-    let publishers = keys.map(|key| {
-        bus.publisher(key, Priority::Normal)
-            .expect("the hub is there")
-    });
+    let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is up"));
     // Until it is killed or the game ends.
     while publishers
         .iter()

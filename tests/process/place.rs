@@ -141,7 +141,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_requires_its_token() {
             LIMIT,
         )
     };
-    wait_until("the session of before is connected again", || {
+    wait_until("the earlier session is connected again", || {
         matches!(release(&before), Err(BusError::Unsealed { .. }))
     });
     let reply = release(&user.bus(&next))

@@ -16,7 +16,7 @@ const ME: VehicleId = VehicleId(0);
 fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
     let publisher = bus
         .publisher(topic::policy(name, &info.scenario, ME), Priority::Normal)
-        .expect("the hub is there");
+        .expect("the hub is up");
     let answer = move |bytes: &[u8]| {
         let picture: Picture = codec::decode(bytes).expect("a picture");
         let stamp = Stamp {
@@ -50,7 +50,7 @@ fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
         publisher.send(&proposal).unwrap_or_default();
     };
     bus.subscribe(topic::picture(name, &info.scenario, TeamId(0)), answer)
-        .expect("the hub is there")
+        .expect("the hub is up")
 }
 
 /// Plays a game with or without the policy; returns the result and the frames.
@@ -68,7 +68,7 @@ fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
     };
     let _seen = bus
         .subscribe(topic::frame(&name), see)
-        .expect("the hub is there");
+        .expect("the hub is up");
     let _policy = has_policy.then(|| drive_north(&bus, &name, &info));
     // A strategy with a policy, with or without the behaviour that keeps the boat inside.
     let strategy = own(if is_safe { "told" } else { "told_unsafe" });
@@ -91,7 +91,7 @@ fn a_boat_follows_a_policy_but_not_out_of_the_field_and_the_game_is_the_same_aga
     let (again, _) = play(true, true);
     assert_eq!(
         outcome["digest"], again["digest"],
-        "a policy that is waited for makes no difference"
+        "waiting for a policy makes no difference"
     );
     assert!(frames.len() > 500, "{} frames", frames.len());
     let navs: Vec<_> = frames
@@ -103,7 +103,7 @@ fn a_boat_follows_a_policy_but_not_out_of_the_field_and_the_game_is_the_same_aga
         .map(|nav| nav.north_m)
         .fold(f64::NEG_INFINITY, f64::max)
         - navs[0].north_m;
-    assert!(north_m > 20.0, "it went {north_m} m north");
+    assert!(north_m > 20.0, "it moved {north_m} m north");
     assert!(
         frames
             .iter()
@@ -111,7 +111,7 @@ fn a_boat_follows_a_policy_but_not_out_of_the_field_and_the_game_is_the_same_aga
         "it stayed inside"
     );
     assert_eq!(outcome["counts"]["boats"]["blue_1"]["agents_lost"], 0);
-    // Without a behaviour that keeps it inside, the same policy takes it out.
+    // Without a behaviour that keeps it inside, the same policy drives it out.
     let (_, frames) = play(false, true);
     assert!(
         frames

@@ -50,7 +50,7 @@ fn a_game_recorded_replayed_and_played_again_is_one_game() {
         assert_eq!(
             recording.frame_count(),
             6001,
-            "a frame a decision, and the last"
+            "a frame per decision, and the last"
         );
         let score = recording
             .frames()
@@ -116,7 +116,7 @@ fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
     let recording = opened(&path);
     assert!(recording.is_cut() && recording.ending().is_none());
     let last_s = recording.frame(recording.frame_count() - 1).at.as_s();
-    // The documented limit is a second, or 20 s of the game; the rest allows for a busy machine.
+    // The documented limit is one second, or 20 s of the game; the rest allows for a busy machine.
     assert!(last_s > now_s - 40.0, "{last_s} s recorded of {now_s} s");
     let said = checked(&path);
     assert!(said.contains("the file ends abruptly there"), "{said}");
@@ -212,7 +212,7 @@ fn a_recording_that_the_disk_has_no_room_for_is_told_in_the_end() {
         );
         assert!(
             opened(&only_recording(dir.path())).is_cut(),
-            "what there was room for is there"
+            "what fitted on the disk is there"
         );
     }
     let dir = temporary();
@@ -299,15 +299,15 @@ fn a_damaged_message_costs_itself_alone() {
     std::fs::write(&path, bytes).expect("it is written");
     let told = printed(&["log", &path.display().to_string()]);
     assert!(
-        told.contains("1 message is damaged and left out; message 7 of frame"),
+        told.contains("1 message is damaged and skipped; message 7 of frame"),
         "{told}"
     );
-    assert!(told.contains(&all), "everything else is told as before");
+    assert!(told.contains(&all), "everything else is unchanged");
     let csv = printed(&["log", &path.display().to_string(), "--csv", "frame"]);
     assert_eq!(
         csv.lines().count(),
         opened(&path).frame_count(),
-        "a line of names, and a line less"
+        "a line of names, and one line less"
     );
     let mut replay = squall(&[
         "replay",
@@ -322,7 +322,7 @@ fn a_damaged_message_costs_itself_alone() {
     replay.kill();
     let said = replay.errors();
     assert_eq!(
-        said.matches("1 message is damaged and left out; message 7 of frame")
+        said.matches("1 message is damaged and skipped; message 7 of frame")
             .count(),
         1,
         "{said}"
@@ -414,7 +414,7 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
         let said = all_output(squall(args));
         assert!(
             said.contains(part),
-            "{args:?} should say {part:?}, but says {said:.500}"
+            "{args:?} should print {part:?}, but prints {said:.500}"
         );
     }
 }

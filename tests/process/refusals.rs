@@ -1,4 +1,4 @@
-//! Agents that send invalid data: refused with a counted reason, without effect on the game.
+//! Agents that send invalid data: it is rejected with a counted reason, and does not affect the game.
 
 use crate::support::{FOUR, Sim, join};
 use bus::{Bus, Latest, Priority, Publisher};
@@ -156,7 +156,7 @@ fn every_agent_mistake_is_refused_counted_and_harmless() {
     }
     assert!(
         done["outcome"]["ticks"].as_u64() >= Some(2 * 24),
-        "the game went on"
+        "the game continued"
     );
     assert!(
         done["outcome"]["events"]
@@ -176,7 +176,7 @@ fn another_version_is_refused_clearly() {
         ..request(&["blue_one"])
     };
     let JoinReply::Refused { reason } = join(&bus, (&name, &scenario), &other) else {
-        panic!("another version is let in")
+        panic!("another version is admitted")
     };
     assert!(
         reason.contains("9.9.9") && reason.contains(primitives::VERSION),

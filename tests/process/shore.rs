@@ -69,7 +69,7 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
     let _agents = [sim.agent(&FOUR[..2]), sim.agent(&FOUR[2..])];
     sim.play_on(2.0);
     let paused_s = shore.pause().now_s;
-    // It repeats that it is paused, always at the same time.
+    // It repeats that it is paused, always with the same time.
     for _ in 0..5 {
         shore.run.visit(|run| run.now_s = -1.0);
         assert_eq!(
@@ -87,7 +87,7 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
         shore.wait_for_run("it plays one decision", is_there);
     }
     shore.ask(Control::Resume);
-    shore.wait_for_run("it goes on", |run| run.phase == Phase::Playing);
+    shore.wait_for_run("it continues", |run| run.phase == Phase::Playing);
     shore.ask(Control::Speed(None));
     let done = sim.wait_for_kind("done");
     assert_eq!(
@@ -105,7 +105,7 @@ fn a_game_goes_as_fast_as_it_is_asked_to() {
         let _agent = sim.agent(&FOUR);
         sim.play_on(0.5);
         shore.ask(Control::Speed(Some(3.0)));
-        shore.wait_for_run("it goes at that speed", |run| {
+        shore.wait_for_run("it runs at that speed", |run| {
             run.speed == Some(3.0) && (2.0..4.0).contains(&run.rate)
         });
         shore.ask(Control::Speed(Some(12.0)));
@@ -117,7 +117,7 @@ fn a_game_goes_as_fast_as_it_is_asked_to() {
         let refused = if is_lockstep { 1 } else { 2 };
         let is_refused =
             |run: &RunState| run.refused == refused && run.speed.is_none() == is_lockstep;
-        shore.wait_for_run("what cannot be is refused", is_refused);
+        shore.wait_for_run("the impossible is refused", is_refused);
         sim.stop();
     }
 }

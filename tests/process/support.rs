@@ -133,7 +133,7 @@ pub(crate) fn newest<T: Default + Send + 'static>(
     let newest = Arc::new(Watched::<T>::default());
     let to = Arc::clone(&newest);
     let standing = bus.subscribe(key, move |bytes| to.visit(|newest| *newest = read(bytes)));
-    (newest, standing.expect("the hub is there"))
+    (newest, standing.expect("the hub is up"))
 }
 
 /// The reply to a node that asks for boats.
@@ -144,7 +144,7 @@ pub(crate) fn join(
 ) -> JoinReply {
     let key = topic::join(name, scenario, request.role, &request.vehicles);
     bus.request(&key, request, LIMIT)
-        .expect("the hub is there")
+        .expect("the hub is up")
         .expect("an answer")
 }
 
@@ -161,8 +161,7 @@ pub(crate) fn helm(
         question.to_vec(),
         LIMIT,
     );
-    serde_json::from_slice(&answer.expect("the hub is there").expect("an answer"))
-        .expect("a report")
+    serde_json::from_slice(&answer.expect("the hub is up").expect("an answer")).expect("a report")
 }
 
 /// Runs a game to its end and returns its result.
@@ -186,19 +185,19 @@ pub(crate) fn assert_a_game_each(game: &str, seeds: &[&str]) {
     let mut digests = Vec::new();
     for seed in seeds {
         let here = game_itself(result_of(&[game, "--seed", seed, "--in-process"]));
-        // With two boats a process, one process decides for a boat of each team.
+        // With two boats per process, one process decides for a boat of each team.
         for boats_each in ["1", "2", "6"] {
             let there = result_of(&[game, "--seed", seed, "--agents-per-process", boats_each]);
             assert_eq!(
                 here,
                 game_itself(there),
-                "seed {seed}, {boats_each} boats a process"
+                "seed {seed}, {boats_each} boats per process"
             );
         }
         digests.push(here["digest"].clone());
     }
     digests.dedup();
-    assert_eq!(digests.len(), seeds.len(), "each seed is another game");
+    assert_eq!(digests.len(), seeds.len(), "each seed is a different game");
 }
 
 /// The part of the result that must not depend on how a game was run.
@@ -239,7 +238,7 @@ impl Process {
     /// Sends SIGKILL.
     pub(crate) fn kill(&mut self) {
         self.0.kill().expect("it can be killed");
-        self.0.wait().expect("it can be collected");
+        self.0.wait().expect("its exit can be awaited");
     }
 
     /// Sends any signal, by name.
@@ -440,7 +439,7 @@ impl Sim {
     pub(crate) fn info(&self, bus: &Bus) -> GameInfo {
         let info = bus
             .ask(&topic::scenario(&self.name()), Vec::new(), LIMIT)
-            .expect("the hub is there");
+            .expect("the hub is up");
         serde_json::from_slice(&info.expect("an answer")).expect("a game")
     }
 
@@ -458,7 +457,7 @@ impl Sim {
             token: Some(token()),
             ..Net::default()
         };
-        Bus::leaf(&net).expect("the hub is there")
+        Bus::leaf(&net).expect("the hub is up")
     }
 }
 

@@ -1,6 +1,6 @@
 //! Scenario files of every kind: shipped files, broken files, noise, and the reference pages.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 mod broken;
 mod hostile;

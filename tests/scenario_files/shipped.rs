@@ -470,7 +470,7 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
 #[test]
 fn the_examples_of_the_handbook_are_sound() {
     let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
-    // Write them beside the shipped files that they name.
+    // They are written beside the shipped files that they name.
     let folder = tempfile::tempdir().unwrap();
     for path in KINDS.iter().flat_map(|kind| files(*kind)) {
         let text = std::fs::read_to_string(&path).unwrap();

@@ -5,15 +5,15 @@ from statistics import median
 
 # The slope is the median of the slopes between pairs of samples: the maximum number of paired samples.
 PAIRED_MAX = 200
-# The first part of a run fills buffers and caches: what grows there does not go on.
+# The first part of a run fills buffers and caches: growth there does not continue.
 WARM_UP = 0.2
-# Fewer samples say nothing of a slope.
+# Fewer samples do not determine a slope.
 SAMPLES_MIN = 5
 
 
 @dataclass
 class Growth:
-    """What a figure was in the beginning and in the end, and what its slope comes to between these."""
+    """A figure at the beginning and at the end, and the total of its slope in between."""
 
     first: float
     last: float
@@ -23,7 +23,7 @@ class Growth:
 def growth_of(samples):
     """The growth of a figure, from pairs of time and value in the order of time; None if they are too few.
 
-    The slope is that of Theil (1950) and Sen (1968): a few odd samples do not turn it, as they would a least-squares line."""
+    The slope is that of Theil (1950) and Sen (1968): a few outliers do not affect it, as they would a least-squares line."""
     warm = samples[int(len(samples) * WARM_UP):]
     if len(warm) < SAMPLES_MIN:
         return None

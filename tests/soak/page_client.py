@@ -1,4 +1,4 @@
-"""A browser's part of crates/shore/PROTOCOL.md: opens the websocket of a page, acknowledges its frames, counts them."""
+"""A browser's part of crates/shore/PROTOCOL.md: opens the WebSocket of a page, acknowledges its frames, and counts them."""
 
 import base64
 import json
@@ -13,7 +13,7 @@ SILENCE_S = 30.0
 
 
 class PageClient:
-    """A page that is open. `hello` has come when this is made."""
+    """An open page. `hello` has arrived when this is created."""
 
     def __init__(self, host, port):
         self.socket = socket.create_connection((host, port), timeout=SILENCE_S)
@@ -30,13 +30,13 @@ class PageClient:
         while self.reader.readline().strip():
             pass
         if " 101 " not in f"{status} ":
-            raise ConnectionError(f"the page says {status!r} to a websocket")
+            raise ConnectionError(f"the page replies {status!r} to a WebSocket request")
         self.hello = None
         while self.hello is None:
             self._take()
 
     def follow(self):
-        """Reads on in a thread of its own, until the page closes."""
+        """Continues reading in its own thread until the page closes."""
         thread = threading.Thread(target=self._follow, daemon=True)
         thread.start()
         return thread

@@ -1,4 +1,4 @@
-"""What Linux says of processes: memory, file descriptors, threads (proc(5))."""
+"""Linux's figures for processes: memory, file descriptors, threads (proc(5))."""
 
 import os
 from dataclasses import dataclass
@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 @dataclass
 class Usage:
-    """What a process has now."""
+    """The current figures of a process."""
 
-    # All that is resident, and of that what is no page of a file: the program's own pages come in as they are first used.
+    # All resident memory, and the part that is not backed by a file: the program's own pages are loaded when first
+    # used.
     rss_mb: float
     own_mb: float
     descriptors: int
@@ -16,7 +17,7 @@ class Usage:
 
 
 def usage_of(pid):
-    """What a process has now; None if it has ended, or is a zombie."""
+    """The current figures of a process; None if it has ended or is a zombie."""
     try:
         with open(f"/proc/{pid}/status", encoding="utf-8") as file:
             status = dict(line.split(":", 1) for line in file)
@@ -30,12 +31,12 @@ def usage_of(pid):
 
 
 def children_of(pid):
-    """The processes that a process has started, and their command lines: empty of one that has ended."""
+    """The processes that a process has started, and their command lines: empty for one that has ended."""
     found = {}
     for name in filter(str.isdigit, os.listdir("/proc")):
         try:
             with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as file:
-                # The name of the program stands in brackets and may contain anything.
+                # The name of the program is in brackets and may contain anything.
                 parent = int(file.read().rpartition(")")[2].split()[1])
             if parent == pid:
                 with open(f"/proc/{name}/cmdline", encoding="utf-8", errors="replace") as file:

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Plays one long game with everything on, and says what grew: memory, file descriptors, threads, latency.
+"""Plays one long game with everything enabled, and reports growth: memory, file descriptors, threads, latency.
 
-`squall run` with emulated boats behind gateways, a page that is looked at, a recording; and `squall watch` beside it. Every
-minute a line with the resident memory of every process, descriptors, threads, and how long requests take; the operator's part is played
-too: each boat is disarmed and armed again. In the end each figure's slope over the run is held against a limit: beyond it, and
-where a process has died or the recording is not whole, the exit code is 1.
+`squall run` with emulated boats behind gateways, an open page, a recording; and `squall watch` beside it. Every minute
+it prints a line with the resident memory of every process, descriptors, threads, and the duration of requests; it also
+acts as the operator: each boat is disarmed and armed again. At the end, each figure's slope over the run is compared
+with a limit: if it exceeds the limit, a process has died or the recording is incomplete, the exit code is 1.
 
-Linux, Python 3.9, no packages. CONTRIBUTING.md says how to run it over night.
+Linux, Python 3.9, no packages. CONTRIBUTING.md explains how to run it overnight.
 """
 
 import argparse
@@ -27,16 +27,16 @@ from page_client import PageClient
 from process import children_of, usage_of
 
 ROOT = Path(__file__).resolve().parents[2]
-# In a short run a process may grow by this, MB: what it does for the first time needs memory.
+# In a short run, a process may grow by this, MB: anything done for the first time needs memory.
 GROW_MB = 4.0
-# What is given time to come up, or to end, s.
+# Time for processes to start or end, s.
 START_S, END_S = 90.0, 120.0
 # How long a request may take before it counts as failed, s.
 ANSWER_S = 20.0
-# Latencies, and what each is of.
+# Latencies, and what each of them measures.
 LATENCIES = {
-    "ask sim": "squall list from its start to its end: a session of its own, a question to the hub and one to the sim",
-    "page": "a websocket of the page from its opening to its first message",
+    "ask sim": "squall list from its start to its end: its own session, a query to the hub and one to the sim",
+    "page": "a WebSocket of the page from its opening to its first message",
     "status": "the status of a boat at its gateway's control port",
     "disarm": "a boat disarmed at its gateway's control port",
     "order": "an order of the game through a gateway to its boat, 99th percentile as the gateway measures it",
@@ -45,11 +45,11 @@ LATENCIES = {
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--hours", type=float, default=24.0, help="how long the game is, simulated hours [24]")
-    parser.add_argument("--pace", type=float, default=3.0, help="simulated seconds a second [3: a night]")
+    parser.add_argument("--hours", type=float, default=24.0, help="length of the game, simulated hours [24]")
+    parser.add_argument("--pace", type=float, default=3.0, help="simulated seconds per second [3: a night]")
     parser.add_argument("--every-s", type=float, default=60.0, help="time between two lines, s [60]")
     parser.add_argument("--out", type=Path, default=ROOT / "runs" / "soak",
-                        help="a folder is made in it for each run: recordings (0.2 GB a simulated hour), result, samples.csv "
+                        help="a subfolder is created for each run: recordings (0.2 GB a simulated hour), result, samples.csv "
                              "[runs/soak]")
     parser.add_argument("--squall", type=Path, help="the program [target/release/squall]")
     parser.add_argument("--grow-mb-h", type=float, default=4.0,
@@ -58,7 +58,7 @@ def arguments():
     parser.add_argument("--grow-count", type=float, default=4.0,
                         help="a process's file descriptors, and its threads, may grow by this over the run [4]")
     parser.add_argument("--slower-ms", type=float, default=100.0,
-                        help="a latency may grow by this over the run, ms [100]; what else the machine does counts too")
+                        help="a latency may grow by this over the run, ms [100]; other load on the machine counts too")
     args = parser.parse_args()
     for name, least, most in (("hours", 0.001, 24.0), ("pace", 0.1, 100.0), ("every_s", 1.0, 3600.0)):
         if not least <= getattr(args, name) <= most:
@@ -70,7 +70,7 @@ def arguments():
 
 
 class Soak:
-    """A game that is being played, and what was measured of it."""
+    """A running game and its measurements."""
 
     def __init__(self, args):
         self.args = args
@@ -87,13 +87,13 @@ class Soak:
         # Boat, when, why: a gateway's status reports only the newest.
         self.failsafes = set()
         self.begun = time.monotonic()
-        # All figures, one a line, as they come: they are there also if this is killed.
+        # All figures, one per line, as they arrive: they are kept even if this is killed.
         self.file = open(self.out / "samples.csv", "w", newline="", encoding="utf-8", buffering=1)
         self.table = csv.writer(self.file)
         self.table.writerow(["at_s", "kind", "of", "value"])
 
     def start(self):
-        """Starts everything, and waits until the game is on."""
+        """Starts everything, and waits until the game has begun."""
         scenarios = ROOT / "scenarios"
         game = Path(self.registry.name) / "soak.toml"
         game.write_text(
@@ -145,7 +145,7 @@ class Soak:
             return None
 
     def wait_for(self, what, find):
-        """What is found in the end; an error if it is not in time."""
+        """The value found eventually; an error if not in time."""
         until = time.monotonic() + START_S
         while time.monotonic() < until:
             if self.run.poll() is not None:
@@ -153,7 +153,7 @@ class Soak:
             if found := find():
                 return found
             time.sleep(0.1)
-        raise SystemExit(f"not within {START_S:.0f} s: {what}; see {self.out}/run.log")
+        raise SystemExit(f"{what}: not within {START_S:.0f} s; see {self.out}/run.log")
 
     def last_words(self):
         return "\n".join((self.out / "run.log").read_text(encoding="utf-8", errors="replace").splitlines()[-10:])
@@ -190,7 +190,7 @@ class Soak:
             self.problems.append(text)
 
     def measured(self, name, at, act):
-        """What it gives, and notes how long that took."""
+        """Its result; records how long it took."""
         start = time.monotonic()
         try:
             result = act()
@@ -231,11 +231,11 @@ class Soak:
         try:
             self.command("gateway", "tell", name, "arm", "--gateway", place)
         except (ValueError, subprocess.SubprocessError) as error:
-            # Not ready just now, as after a failsafe: it stays disarmed until the next time.
+            # Not ready just now, for example after a failsafe: it stays disarmed until the next time.
             print(f"         {error}", flush=True)
 
     def end(self):
-        """Ends everything in good order; what does not end is killed."""
+        """Ends everything in order, and kills what does not end."""
         over = self.page is not None and self.page.state.get("phase") == "over"
         for name, child in reversed(self.started):
             # The observers end with the game; `run` keeps the page open until Ctrl-C.
@@ -256,10 +256,10 @@ class Soak:
             self.problems.append("the game was not played to its end")
 
     def read_recording(self):
-        """Whether the recording is read to its end, and in how much memory."""
+        """Checks that the recording can be read to its end, and how much memory that takes."""
         files = sorted(self.out.glob("*_soak_*.mcap"), key=lambda file: file.stat().st_mtime)
         if not files:
-            return self.problems.append("there is no recording")
+            return self.problems.append("no recording")
         start = time.monotonic()
         child = self.begin("log", "log", files[-1])
         _, status, usage = os.wait4(child.pid, 0)
@@ -289,12 +289,12 @@ def ask_gateway(place, boat, command):
         lines.flush()
         answer = json.loads(lines.readline())["answer"]
     if answer["refused"] is not None:
-        raise ValueError(f"{boat} refuses {command}: {answer['refused']}")
+        raise ValueError(f"{boat} refused {command}: {answer['refused']}")
     return answer
 
 
 def show(soak, number):
-    """A line about the newest sample, below a heading now and then."""
+    """A line about the newest sample, with an occasional heading."""
     names = [name for kind, name in soak.samples if kind == "rss_mb"]
     newest = {key: series[-1][1] for key, series in soak.samples.items()}
     if number % 20 == 0:
@@ -319,13 +319,13 @@ def judge(soak):
     grow_mb = max(GROW_MB, soak.args.grow_mb_h * newest_time(soak) / 3600)
     limits = {"own_mb": grow_mb, "descriptors": soak.args.grow_count, "threads": soak.args.grow_count,
               "ms": soak.args.slower_ms}
-    units = {"own_mb": "memory of its own, MB", "descriptors": "file descriptors", "threads": "threads", "ms": "latency, ms"}
+    units = {"own_mb": "own memory, MB", "descriptors": "file descriptors", "threads": "threads", "ms": "latency, ms"}
     for kind, limit in limits.items():
         print(f"\n{units[kind] + f' (limit {limit:g})':32}{'first':>10}{'last':>10}{'grew':>10}")
         for (_, of), series in ((key, series) for key, series in soak.samples.items() if key[0] == kind):
             growth = growth_of(series)
             if growth is None:
-                soak.problems.append(f"only {len(series)} samples of {of} ({units[kind]}): too few to tell a slope")
+                soak.problems.append(f"only {len(series)} samples of {of} ({units[kind]}): too few for a slope")
                 continue
             beyond = growth.grew > limit
             print(f"  {of:30}{growth.first:10.2f}{growth.last:10.2f}{growth.grew:10.2f}{'  TOO MUCH' if beyond else ''}")
@@ -356,7 +356,7 @@ def main():
         soak.start()
         play(soak)
     except KeyboardInterrupt:
-        print("interrupted: what follows holds up to here")
+        print("interrupted: the following results are partial")
     finally:
         soak.end()
     judge(soak)

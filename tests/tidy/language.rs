@@ -4,7 +4,7 @@ use crate::rule::Breaches;
 use crate::text::{code_of, prose};
 use crate::tree::Tree;
 
-/// Maximum length of a sentence in a document, words. Half of that is better.
+/// Maximum length of a sentence in a document, words. Half as long is better.
 const WORDS_MAX: usize = 40;
 
 /// Phrases that a native engineer would not write, each with its replacement.
@@ -26,7 +26,7 @@ const PHRASES: [(&str, &str); 24] = [
     ("surely", "significantly, certainly"),
     ("one at least", "at least one"),
     ("in the mean", "on average"),
-    ("is there already", "exists already"),
+    ("is there already", "already exists"),
     ("look at it", "show it, open it"),
     ("thrust zero", "zero thrust"),
     ("inside of", "inside, within"),

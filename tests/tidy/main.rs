@@ -70,14 +70,14 @@ fn every_rule_notices_its_breach() {
         assert_eq!(
             breaches_of(&tree, &rule),
             Breaches::new(),
-            "the sound tree, by {rule:?}"
+            "the valid tree breaks {rule:?}"
         );
         tree.files
             .insert(path.clone(), parts.next().expect("a text").to_owned());
         let found = breaches_of(&tree, &rule).join("\n");
         assert!(
             found.contains(&said),
-            "{rule:?} with this {path} should say {said:?}, but says {found:?}"
+            "{rule:?} with this {path} should report {said:?}, but reports {found:?}"
         );
         tried.push(rule);
     }
@@ -87,7 +87,7 @@ fn every_rule_notices_its_breach() {
     assert_eq!(
         untested.map(|(name, _)| name),
         None,
-        "a rule that no breach tries"
+        "a rule that no breach tests"
     );
 }
 

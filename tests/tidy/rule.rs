@@ -1,5 +1,5 @@
-//! The rules, each of which finds its breaches in a tree. These files are checked too: words that
-//! must not occur are joined from halves.
+//! The rules, each of which finds its breaches in a tree. These files are checked too, so words that must not occur are
+//! joined from halves.
 
 use crate::language::{language, links};
 use crate::shown_by::shown_by;
@@ -13,12 +13,12 @@ pub(crate) const LINES_MAX: usize = 650;
 const MAY_IMPORT: [(&str, &[&str]); 25] = [
     ("onnx", &[]),
     ("primitives", &[]),
-    // `scenario` for tests alone: scenes are judged by the shipped rules files.
+    // `scenario` for tests only: scenes are judged by the shipped rules files.
     ("rules", &["primitives", "scenario"]),
     ("scenario", &["onnx", "primitives", "rules"]),
     ("messages", &["primitives", "rules", "scenario"]),
     ("bus", &["primitives", "scenario", "messages"]),
-    // For tests alone: no program links it.
+    // For tests only: no program links it.
     (
         "simulated_network",
         &["primitives", "scenario", "messages", "bus"],
@@ -129,7 +129,7 @@ const MAY_IMPORT: [(&str, &[&str]); 25] = [
             "analysis",
         ],
     ),
-    // `gateway` for latitudes and longitudes of the field alone.
+    // `gateway` only for latitudes and longitudes of the field.
     (
         "ros",
         &[
@@ -178,8 +178,7 @@ const ALL: &[&str] = &["all of the workspace"];
 /// Crates outside the workspace, which none may import.
 const OUTSIDE: [&str; 3] = ["fuzz", "gateway-crosscheck", "python"];
 
-/// Crates whose network shell, `node`, is the only place that may use `bus`; everything else in
-/// them is pure.
+/// Crates whose network shell, `node`, is the only part that may use `bus`; everything else in them is pure.
 const SHELLS: [&str; 3] = ["sim", "agent", "gateway"];
 
 /// The file with the readers' questions.
@@ -224,7 +223,7 @@ fn dependencies(tree: &Tree) -> Breaches {
         let folder = folder.strip_prefix("crates/").unwrap_or(folder);
         let Some((_, allowed)) = MAY_IMPORT.iter().find(|(name, _)| *name == folder) else {
             breaches.push(format!(
-                "{path}:1: no rule for this crate: say in tests/tidy.rs what it may import"
+                "{path}:1: no rule for this crate: state in tests/tidy/rule.rs what it may import"
             ));
             continue;
         };
@@ -306,7 +305,7 @@ fn keys_in_topic(tree: &Tree) -> Breaches {
     tree.find(
         elsewhere,
         |line| line.contains(key),
-        "a key is spelt; allowed in crates/messages/src/topic.rs",
+        "a key is spelled out; allowed in crates/messages/src/topic.rs",
     )
 }
 
@@ -316,7 +315,8 @@ fn files_in_shape(tree: &Tree) -> Breaches {
         let lines = text.lines().count();
         if lines > LINES_MAX {
             breaches
-                .push(format!("{path}:{lines}: {lines} lines, allowed: {LINES_MAX}; which noun wants its own file?"));
+                .push(format!("{path}:{lines}: {lines} lines, allowed: {LINES_MAX}; which part should have its own \
+                    file?"));
         }
         if !text.starts_with("//! ") {
             breaches.push(format!(

@@ -69,7 +69,7 @@ fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
     })
 }
 
-/// The share of the weight that applies; 1 at the inner distance and nearer.
+/// The fraction of the weight that applies; 1 at the inner distance and nearer.
 fn graded(grade: Grade, nearness: f64) -> f64 {
     match grade {
         Grade::Linear => nearness,

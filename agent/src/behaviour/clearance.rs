@@ -15,9 +15,9 @@ const ROUNDING_M: f32 = 0.01;
 
 /// Lowers the utilities of a table to the clearance that each candidate keeps from the edges.
 ///
-/// A candidate is worth the share of `save_m` that it keeps: half for the least distance to an edge
-/// on the way, half for the distance at the end of the look-ahead. The worst edge counts. For the
-/// share `x` it gets `x + bend x (1 - x)` of each half.
+/// A candidate is worth the fraction of `save_m` that it keeps: half for the least distance to an edge
+/// on the way, half for the distance at the end of the look-ahead. The worst edge counts. For the fraction `x` it gets
+/// `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -94,7 +94,7 @@ impl Clearance<'_> {
             let cos_to =
                 courses.north.0[i] * edge.normal.north + courses.east.0[i] * edge.normal.east;
             let straight_s = turns.straight_s.0[i] * cos_to;
-            // The turn goes out by at most its length.
+            // The turn leads out by at most its length.
             let most_s = turns.duration_s.0[i] + if straight_s > 0.0 { straight_s } else { 0.0 };
             may_be_low |= most_s > out_s;
         }
@@ -397,7 +397,7 @@ fn held(speed_m_s: f32, (slowest, fastest): (f32, f32)) -> f32 {
     smaller(larger(speed_m_s, slowest), fastest)
 }
 
-/// Half of the utility, 0 to 50, for a distance as a share of `save_m`.
+/// Half of the utility, 0 to 50, for a distance as a fraction of `save_m`.
 #[inline(always)]
 fn kept(part: f32, bend: f32) -> f32 {
     let linear = larger(smaller(part, 50.0), 0.0);

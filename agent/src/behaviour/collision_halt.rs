@@ -20,8 +20,7 @@ enum Halt {
     Halted {
         since: SimTime,
     },
-    /// Released after its time with others still near; it halts again only after it has been clear
-    /// of them.
+    /// Released after its time limit with others still near; it halts again only after it has been clear of them.
     Released,
 }
 

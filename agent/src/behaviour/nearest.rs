@@ -39,7 +39,7 @@ impl Nearest {
     }
 }
 
-/// The share of a weight at a distance: 1 up to `inner_m`, 0 from `outer_m` on.
+/// The fraction of a weight at a distance: 1 up to `inner_m`, 0 from `outer_m` on.
 pub(super) fn nearness(distance_m: f64, inner_m: f64, outer_m: f64) -> f64 {
     if distance_m <= inner_m {
         1.0

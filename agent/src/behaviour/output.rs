@@ -45,7 +45,7 @@ pub(crate) struct BehaviourOutput<'a> {
     weight: f64,
     /// Whether the behaviour influences the helm.
     pub(crate) active: bool,
-    /// Whether the behaviour reached a point.
+    /// Whether the behaviour has reached a waypoint.
     pub(crate) reached: bool,
     pub(crate) complete: bool,
     /// Whether the behaviour requires the boat to stop, whatever others want.
@@ -74,7 +74,7 @@ impl<'a> BehaviourOutput<'a> {
         self.add_share(1.0, None, objective);
     }
 
-    /// Adds a function at a share (0 to 1) of the behaviour's weight; larger shares are clamped.
+    /// Adds a function at a fraction (0 to 1) of the behaviour's weight; larger values are clamped.
     pub(crate) fn add_share(
         &mut self,
         share: f64,
@@ -88,8 +88,7 @@ impl<'a> BehaviourOutput<'a> {
         self.active = true;
         self.functions.problem.add(weight, objective);
         let mut utilities = Vec::new();
-        // The functions of a decision are 100,000 numbers, ten times per second and boat, and most
-        // of the time nobody requests them.
+        // The functions of a decision comprise 100,000 numbers, ten times a second per boat, and are rarely requested.
         if self.functions.shown {
             let grid = self.grid();
             utilities.extend(grid.points().map(|(k, j)| objective.utility(grid, k, j)));

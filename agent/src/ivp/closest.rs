@@ -1,6 +1,6 @@
 //! The closest point of approach to a contact for every course and speed.
 //!
-//! The contact is at `p` relative to the own ship and moves with `c`; the own ship is on course `d`
+//! The contact is at `p` relative to own ship and moves with `c`; own ship is on course `d`
 //! (a unit vector) at speed `s`. The contact's relative velocity is `w = c - s d`, and its distance
 //! `|p + w t|` is least at
 //!
@@ -71,7 +71,7 @@ pub enum Approach {
 /// Utility of the distance at the closest point of approach to a contact of constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// The contact's position relative to the own ship, m.
+    /// The contact's position relative to own ship, m.
     pub offset: Ned,
     /// Velocity of the contact, m/s.
     pub velocity: Ned,
@@ -85,7 +85,7 @@ pub struct Closest {
     pub touch_m: f64,
     /// Whether to avoid or to approach.
     pub approach: Approach,
-    /// The own ship's delay; `None` if it follows decisions at once.
+    /// Own ship's delay; `None` if it follows decisions at once.
     pub lag: Option<Lag>,
 }
 
@@ -193,7 +193,7 @@ pub(super) struct Ready {
     at_min: f32,
     /// Whether to approach.
     pub(super) seek: bool,
-    /// The own ship's turn.
+    /// Own ship's turn.
     pub(super) turning: Turning,
     mean_speed: MeanSpeed,
     /// Perpendicular to the present line of sight, towards the side on which to leave the contact;
@@ -215,15 +215,14 @@ pub(super) struct Ways {
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// For the middle path: the contact's position after the turn, its motion until then and the
-    /// share of that until it was nearest, its motion afterwards, and the time at which it is
-    /// nearest.
+    /// For the middle path: the contact's position after the turn, its motion until then and the fraction of that until
+    /// it was nearest, its motion afterwards, and the time at which it is nearest.
     middle: Vector,
     past: Vector,
     share: f32,
     w: Vector,
     t: f32,
-    /// How far other paths may deviate from the polygon of these, m, and the increase of that, m/s.
+    /// How far other paths may deviate from the polygon of these, m, and how fast that grows, m/s.
     off: f32,
     bend: f32,
 }
@@ -311,7 +310,7 @@ impl Ready {
         }
     }
 
-    /// Upper bound of the least distances on ways of a cell, m.
+    /// Upper bound of the least distances on the paths of a cell, m.
     #[inline(always)]
     pub(super) fn most(&self, ways: &Ways) -> f32 {
         let Ways { first, last, t, .. } = *ways;
@@ -323,7 +322,7 @@ impl Ready {
         smaller(smaller(straight, turning), self.least_before).sqrt() + ways.off + ways.bend * t
     }
 
-    /// Lower bound of the least distances on ways of a cell, m.
+    /// Lower bound of the least distances on the paths of a cell, m.
     #[inline(always)]
     pub(super) fn least(&self, ways: &Ways) -> f32 {
         let nearest = (
@@ -349,7 +348,7 @@ impl Ready {
         smaller(least * self.other_side, least)
     }
 
-    /// The contact's position when the own ship is on its course.
+    /// The contact's position when own ship is on its course.
     #[inline(always)]
     fn after(&self, turn: &Turn) -> Vector {
         let past = (
@@ -359,7 +358,7 @@ impl Ready {
         (self.start.0 + past.0, self.start.1 + past.1)
     }
 
-    /// The contact's velocity relative to the own ship on a course, a unit vector, at a speed, m/s.
+    /// The contact's velocity relative to own ship on a course, a unit vector, at a speed, m/s.
     #[inline(always)]
     fn passing(&self, course: Vector, speed: f32) -> Vector {
         (

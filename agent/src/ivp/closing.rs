@@ -1,4 +1,4 @@
-//! How fast the own ship closes on a point or contact, or moves away from it.
+//! How fast own ship closes on a point or contact, or moves away from it.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
@@ -11,7 +11,7 @@ use primitives::Ned;
 /// distance there is no line of sight, and all candidates get 50.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closing {
-    /// The contact's position relative to the own ship, m.
+    /// The contact's position relative to own ship, m.
     pub offset: Ned,
     /// Velocity of the contact, m/s; 0 for a point.
     pub velocity: Ned,

@@ -46,7 +46,7 @@ impl Weight {
         Weight((weight / QUANTUM) as f32)
     }
 
-    /// A share (0 to 1) of this weight.
+    /// A fraction (0 to 1) of this weight.
     pub(super) fn share(self, share: f64) -> Weight {
         Weight((f64::from(self.0) * share) as f32)
     }

@@ -67,7 +67,7 @@ impl<'a> Distances<'a> {
             return;
         }
         let turning = ready.turning;
-        // The own ship's turns are the same for all contacts; each costs a square root.
+        // Own ship's turns are the same for all contacts; each costs a square root.
         if self.known.is_none_or(|known| turning != known.turning) {
             for i in 0..LANES {
                 self.turns.set(i, &turning.to((north.0[i], east.0[i])));

@@ -19,7 +19,7 @@ pub enum Objective<'a> {
         course: Peak,
         /// Preference for the speed.
         speed: Peak,
-        /// The course's share of the utility, 0 to 1; the rest is the speed's.
+        /// The course's fraction of the utility, 0 to 1; the rest is the speed's.
         course_share: f64,
     },
     /// Distance at the closest point of approach to a contact.
@@ -163,7 +163,7 @@ pub(super) enum Parts<'a> {
 pub(super) struct Separable<'a> {
     pub(super) course: &'a Peak,
     pub(super) speed: &'a Peak,
-    /// The course's share of the utility, 0 to 1.
+    /// The course's fraction of the utility, 0 to 1.
     share: f64,
 }
 

@@ -1,4 +1,4 @@
-//! One decision: takes functions, and finds the best course and speed.
+//! One decision: collects functions and finds the best course and speed.
 
 use super::cell::Cells;
 use super::fixed::{FUNCTIONS_MAX, QUANTUM, Weight};
@@ -20,9 +20,9 @@ pub struct Decision {
 /// Tie-breaker between equally good candidates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preference {
-    /// Present course of the own ship, rad.
+    /// Own ship's present course, rad.
     pub course_rad: f64,
-    /// Present speed of the own ship, m/s.
+    /// Own ship's present speed, m/s.
     pub speed_m_s: f64,
 }
 

@@ -23,7 +23,7 @@ pub(super) struct Best {
     pub(super) decision: Decision,
 }
 
-/// The own ship's present motion.
+/// Own ship's present motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Present {
     /// Its course, ticks.
@@ -378,8 +378,8 @@ impl Sums {
     }
 }
 
-/// Formulas with full utility throughout a sector: those that avoid a contact that comes near on no
-/// path in it.
+/// Formulas with full utility throughout a sector: those that avoid a contact that does not come near on any path in
+/// it.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
     /// By formula, a bit for each sector of the group.

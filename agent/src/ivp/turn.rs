@@ -1,4 +1,4 @@
-//! The own ship's response to a decision: it keeps its motion for its reaction time, turns the
+//! Own ship's response to a decision: it keeps its motion for its reaction time, turns the
 //! shorter way along an arc at its present speed, then goes straight, with limited acceleration.
 //!
 //! From the heading `h` to the course `d`, unit vectors with the angle `a` between them, a turn at
@@ -17,10 +17,10 @@ use primitives::Ned;
 /// A vector: north, east.
 pub(super) type Vector = (f32, f32);
 
-/// The own ship's delay in following a decision.
+/// Own ship's delay in following a decision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
-    /// Present velocity of the own ship, m/s.
+    /// Own ship's present velocity, m/s.
     pub velocity: Ned,
     /// Present heading, as a unit vector.
     pub heading: Ned,
@@ -39,7 +39,7 @@ pub struct Lag {
 const ANGLE_OF_CHORD: f64 = 1.15;
 
 impl Lag {
-    /// Time until the own ship is on a course, a unit vector, if it keeps its motion for half of
+    /// Time until own ship is on a course, a unit vector, if it keeps its motion for half of
     /// its turn, s.
     #[inline(always)]
     pub fn duration_s(&self, course: Ned) -> f64 {
@@ -71,7 +71,7 @@ impl Lag {
             && rates.iter().all(|rate| sound(rate) && *rate > 1e-4)
     }
 
-    /// The longest time until the own ship is on its course, s.
+    /// The longest time until own ship is on its course, s.
     pub(super) fn most_s(&self) -> f64 {
         self.reaction_s + std::f64::consts::PI / self.turn_rad_s
     }
@@ -80,7 +80,7 @@ impl Lag {
 /// Maximum error of an angle in single precision, where its cosine is near 1, rad.
 const ROUNDING_RAD: f32 = 1e-3;
 
-/// The own ship's turn in single precision, the same for all contacts.
+/// Own ship's turn in single precision, the same for all contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turning {
     heading: Vector,
@@ -179,7 +179,7 @@ impl Turning {
     }
 }
 
-/// The mean speed of the own ship on its straight run until it meets a contact, with limited
+/// Own ship's mean speed on its straight run until it meets a contact, with limited
 /// acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MeanSpeed {
@@ -211,7 +211,7 @@ impl MeanSpeed {
         })
     }
 
-    /// The mean speed for an ordered one. If the change takes the share `y` of the time, the mean
+    /// The mean speed for an ordered one. If the change takes the fraction `y` of the time, the mean
     /// change is `y
     /// - y^2 / 2` of the largest possible.
     #[inline(always)]

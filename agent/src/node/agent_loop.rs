@@ -34,8 +34,7 @@ pub(super) struct AgentLoop {
     runner: MindRunner,
     talk: Talk,
     policies: PolicyInbox,
-    /// Opened after joining: an agent that waits for a boat must not answer for the agent that has
-    /// it.
+    /// Opened after joining: an agent that is waiting for a boat must not answer for the agent that has it.
     helm_queries: Option<HelmQueries>,
     orders: Publisher,
     /// The pictures of each team, oldest first, that the minds have not seen.
@@ -233,7 +232,7 @@ impl AgentLoop {
     }
 }
 
-/// A picture with the events of the previous one added if no decision was made on that one.
+/// A picture with the events of the previous one added if that one led to no decision.
 /// `decided` is the number of the last decision. Each event is in one picture only.
 fn with_missed_events(
     mut picture: Picture,

@@ -12,10 +12,10 @@ pub enum NodeError {
     #[error(transparent)]
     Bus(#[from] BusError),
     /// No sim found within the allowed time.
-    #[error("no game to join after {0:.0?}: {1}")]
+    #[error("found no game to join within {0:.0?}: {1}")]
     NoGame(Duration, String),
     /// The sim rejected the request.
-    #[error("the sim refuses: {0}")]
+    #[error("refused by the sim: {0}")]
     Refused(String),
     /// The sim has another version.
     #[error("agent and sim have different versions: the agent is {ours}, {theirs}", ours = primitives::VERSION)]

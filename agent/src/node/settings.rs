@@ -22,7 +22,7 @@ pub struct Settings {
     pub vehicles: Vec<String>,
     /// Maximum time to search for the sim and to wait for free vehicles.
     pub wait: Duration,
-    /// Without a picture for this long, the sim counts as gone.
+    /// Without a picture for this long, the sim is treated as lost.
     pub silence: Duration,
     /// Makes the minds; `None`: by the scenario's strategies.
     pub mind: Option<Box<MindMaker>>,

@@ -51,8 +51,8 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        // By the scenario's strategies: if a mate plays another one (`--strategy`), the agent waits
-        // for its messages once at most.
+        // By the scenario's strategies: if a mate follows another one (`--strategy`), the agent waits for its messages
+        // at most once.
         let talks = |vehicle| {
             roles::role_of(scenario, vehicle)
                 .variables
@@ -112,7 +112,7 @@ impl Talk {
         runner.receive(&self.words);
     }
 
-    /// Takes the minds' messages after a decision, to send to mates elsewhere.
+    /// Collects the minds' messages after a decision, to send them to mates elsewhere.
     pub(super) fn publish_words(&mut self, said: &[Word], stamp: Stamp) {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);

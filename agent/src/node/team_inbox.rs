@@ -322,7 +322,7 @@ mod tests {
         );
         assert_eq!(inbox.refusals.of(Refusal::Surplus), 300 - SHARED_MAX as u64);
         assert_eq!(delivered(&mut inbox, 1).len(), SHARED_MAX);
-        // The number of a decision that never comes hides earlier messages, but not for long.
+        // The number of a decision that never happens hides earlier messages, but not for long.
         receive(&mut inbox, &say(u64::MAX, &[(1, 1.0)]));
         assert!(inbox.is_complete(u64::MAX));
         assert!(inbox.is_complete(3), "it is beyond the awaited decision");

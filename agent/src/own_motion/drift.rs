@@ -43,7 +43,7 @@ const SLIDE_ERROR: f64 = 0.5;
 /// Correlation time of that error, s: a turn.
 const SLIDE_TIME_S: f64 = 4.0;
 
-/// The estimate. The default belongs to an unknown boat.
+/// The estimate. The default is that of an unknown boat.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DriftEstimate {
     /// The drift over the ground, m/s.
@@ -74,7 +74,7 @@ impl DriftEstimate {
             return;
         }
         let (north, east, both) = self.variance;
-        // Bounded, so that a single wave does not set the drift on a heading unused for an hour.
+        // Bounded, so that a single wave does not determine the drift along an axis that was not observed for an hour.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
         let north = grown(north);
         let east = grown(east);

@@ -1,15 +1,14 @@
-//! Handling: how soon, fast and hard a boat turns and brakes, from its file and then from
-//! observation.
+//! Handling: how soon, fast and hard a boat turns and brakes, according to its file and later to observation.
 
 use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
 
-/// Mean yaw rate of a turn as a share of the steady yaw rate at full rudder.
+/// Mean yaw rate of a turn as a fraction of the steady yaw rate at full rudder.
 const MEAN_OF_STEADY: f64 = 0.7;
-/// Delay until a decision takes effect, besides lag and latency of the thrusters, s.
+/// Delay until a decision takes effect, in addition to lag and latency of the thrusters, s.
 const DECISION_S: f64 = 0.45;
-/// Mean yaw rate of a turn as a share of its initial rate, since the error decreases.
+/// Mean yaw rate of a turn as a fraction of its initial rate, since the error decreases.
 const MEAN_OF_FIRST: f64 = 0.6;
-/// Minimum turn rate of a boat with thrusters as a share of the maximum: the helm keeps asking for
+/// Minimum turn rate of a boat with thrusters as a fraction of the maximum: the helm keeps asking for
 /// more during a turn.
 const LEAST_OF_MOST: f64 = 0.3;
 /// The same for a point boat, which takes half a minute for the last degrees of a turn.
@@ -18,12 +17,12 @@ const LEAST_OF_POINT_BOAT: f64 = 0.1;
 const MEMORY_S: f64 = 8.0;
 /// Turning time after which observation counts as much as the file, s.
 const TRUST_S: f64 = 3.0;
-/// A smaller heading error says nothing about how the boat turns, rad.
+/// Heading error below which turning is not observed, rad.
 const ERROR_MIN_RAD: f64 = 0.35;
-/// Accepted range of the observed turn rate as a share of the file's.
+/// Accepted range of the observed turn rate as a fraction of the file's.
 const SHARE: (f64, f64) = (0.25, 1.5);
 
-/// The acceleration of a boat without a limit, m/s².
+/// Acceleration assumed for a boat without an acceleration limit, m/s².
 const AT_ONCE_M_S2: f64 = 1e3;
 
 /// How a boat handles.
@@ -40,7 +39,7 @@ pub(crate) struct Handling {
     /// Acceleration and deceleration, m/s².
     pub(crate) acceleration_m_s2: f64,
     pub(crate) deceleration_m_s2: f64,
-    /// Outward velocity per m/s and rad/s of a turn, s, and its decay time, s.
+    /// Outward drift velocity per unit of speed × yaw rate in a turn, s, and its decay time, s.
     pub(crate) slide_s: f64,
     pub(crate) slide_decay_s: f64,
 }
@@ -72,7 +71,7 @@ impl Handling {
         }
     }
 
-    /// The same handling at this share of its yaw rates.
+    /// The same handling at this fraction of its yaw rates.
     pub(crate) fn turning(self, share: f64) -> Handling {
         Handling {
             turn_rad_s: share * self.turn_rad_s,
@@ -146,10 +145,10 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
     }
 }
 
-/// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, per cent per
-/// degree and per degree a second, and the yaw rate is proportional to rudder and thrust. With k for
-/// the yaw rate per rudder at full thrust, r = k (p e - d r) gives k p / (1 + k d) per error. It
-/// reaches half of the acceleration limits.
+/// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, in per cent per degree and per cent
+/// per (degree/s), and the yaw rate is proportional to rudder and thrust. With k for the yaw rate per rudder at full
+/// thrust, r = k (p e - d r) gives k p / (1 + k d) per unit of heading error. It reaches half of the acceleration
+/// limits.
 fn of_kinematic(kinematic: &Kinematic) -> Handling {
     let per_rudder_rad_s = kinematic.turn_rate.to_radians() / 100.0 * (kinematic.thrust_max / 50.0);
     let [rudder_per_rad, rudder_per_rad_s] =
@@ -176,11 +175,10 @@ fn of_kinematic(kinematic: &Kinematic) -> Handling {
 }
 
 /// The boat's observed turn rate relative to its file: the least-squares ratio of observed to
-/// expected yaw rates, with a prior of 1 weighted as [`TRUST_S`] of turning, and exponential
-/// forgetting.
+/// expected yaw rates, with a prior of 1 weighted like [`TRUST_S`] seconds of turning, and exponential forgetting.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SeenTurn {
-    /// Sums of the expected rate times the observed one, and times itself, rad²/s.
+    /// Sums of expected × observed and of expected², rad²/s.
     seen: f64,
     expected: f64,
     /// The expected yaw rate now, rad/s; it builds up over the reaction time.
@@ -188,7 +186,7 @@ pub(crate) struct SeenTurn {
 }
 
 impl SeenTurn {
-    /// Takes in the yaw rate measured after `step_s` with this heading error.
+    /// Updates the estimate with the yaw rate measured after `step_s` with this heading error.
     pub(crate) fn observe(
         &mut self,
         error_rad: f64,
@@ -207,7 +205,7 @@ impl SeenTurn {
         self.expected = kept * self.expected + self.rate_rad_s * self.rate_rad_s * step_s;
     }
 
-    /// The turn rate as a share of the file's.
+    /// The turn rate as a fraction of the file's.
     pub(crate) fn share(&self, handling: &Handling) -> f64 {
         let file = TRUST_S * handling.turn_rad_s * handling.turn_rad_s;
         ((file + self.seen) / (file + self.expected)).clamp(SHARE.0, SHARE.1)

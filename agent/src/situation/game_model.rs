@@ -30,7 +30,7 @@ pub(crate) struct GameModel {
     pub(crate) targets: Vec<(FlagId, Ned)>,
     /// The flags to defend.
     pub(crate) own_flags: Vec<(FlagId, Ned)>,
-    /// The score that ends the game, or Pyquaticus's default.
+    /// The score that ends the game, or Pyquaticus' default.
     pub(crate) score_max: f64,
     /// The top speed of every boat of the game, m/s, by vehicle index.
     pub(crate) boat_speeds_m_s: Vec<f64>,

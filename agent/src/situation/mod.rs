@@ -34,10 +34,9 @@ const STILL_AFTER_S: f64 = 30.0;
 const LATE_S: f64 = 0.5;
 /// Distance to anything unknown, m.
 const NOWHERE_M: f64 = 1e9;
-/// A boat this far inside its untagging place was tagged there and must leave it, as a share of the
-/// radius.
+/// A boat this far inside its untagging place was tagged there and must leave it, as a fraction of the radius.
 const WELL_INSIDE: f64 = 0.5;
-/// Share of the radius beyond which it counts as having left.
+/// Fraction of the radius beyond which it counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
 
 /// Another boat.
@@ -110,7 +109,7 @@ pub(crate) struct Situation {
     pub(crate) model: GameModel,
     pub(crate) now: SimTime,
     pub(crate) step_s: f64,
-    /// Whether a picture has been taken in.
+    /// Whether a picture has been processed.
     begun: bool,
     /// For a previewed picture: whether it shows the boat itself.
     is_seen: Option<bool>,
@@ -192,12 +191,12 @@ impl Situation {
         }
     }
 
-    /// Takes in the picture for the next decision in advance.
+    /// Processes the picture for the next decision in advance.
     pub(crate) fn preview(&mut self, picture: &Picture) {
         self.is_seen = Some(self.apply_picture(picture));
     }
 
-    /// Takes in the newest picture unless a preview has. Returns whether it shows the boat itself.
+    /// Processes the newest picture unless a preview has done so. Returns whether it shows the boat itself.
     pub(crate) fn update(&mut self, picture: &Picture) -> bool {
         self.is_seen
             .take()
@@ -318,8 +317,8 @@ impl Situation {
         (boat.nav.at() + track.gone, track.velocity)
     }
 
-    /// Notes which enemies have tagged a boat of the team, and so cannot tag again for a while, and
-    /// which boats are out of action.
+    /// Records which enemies have tagged a boat of the team, and so cannot tag again for a while, and which boats are
+    /// out of action.
     fn note_events(&mut self, picture: &Picture) {
         for logged in picture.events.iter().filter_map(EventRecord::logged) {
             match logged.event {

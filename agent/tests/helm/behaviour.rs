@@ -1,4 +1,4 @@
-//! Each behaviour alone: its decisions in given scenes.
+//! Each behaviour on its own, and its decisions in given scenes.
 
 use crate::scene::{
     Boat, alone, decided, helm, only, picture, scenario, set_time, steered, without_safety,
@@ -59,7 +59,7 @@ fn is_wanted(report: &HelmReport, want: &str) -> bool {
             want.split_once(' ').is_some_and(|(want_deg, want_m_s)| {
                 let number = |text: &str| text.parse::<f64>().unwrap_or(f64::NAN);
                 let off_deg = (course_deg - number(want_deg)).rem_euclid(360.0);
-                // Half a step of the grid: 1 degree, 3/35 m/s.
+                // Half a step of the grid: 1 degree and 3/35 m/s.
                 off_deg.min(360.0 - off_deg) <= 0.51
                     && (speed_m_s - number(want_m_s)).abs() <= 0.044
             })
@@ -196,7 +196,7 @@ fn a_loiter_goes_all_the_way_round() {
         .windows(2)
         .map(|two| (two[1] - two[0] + 540.0).rem_euclid(360.0) - 180.0)
         .sum();
-    // The perimeter is 145 m: 300 m are two rounds.
+    // The perimeter is 145 m, so 300 m is about two laps.
     assert!(
         (650.0..850.0).contains(&turned_deg),
         "turned {turned_deg} degrees"
@@ -360,7 +360,7 @@ fn who_looks_inside_sees_the_utilities() {
     let best = it.utilities.iter().copied().fold(0.0, f32::max);
     assert!(
         utility > 99.0 && (best - utility).abs() < 1e-3,
-        "the waypoint's preference wins: {utility}, {best}"
+        "the waypoint's preference prevails: {utility}, {best}"
     );
     let value: f64 = report
         .functions

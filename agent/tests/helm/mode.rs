@@ -44,7 +44,7 @@ fn the_first_mode_whose_condition_holds_is_the_one() {
 
 #[test]
 fn every_shipped_strategy_takes_a_flag_home() {
-    // The medium defender, which may come across a flag in pursuit, once held its station with it.
+    // The medium defender may come across a flag in pursuit, and once held its station while carrying it.
     for strategy in [
         "easy_attacker",
         "medium_attacker",
@@ -111,7 +111,7 @@ fn behaviours_live_and_post() {
         (run_state(&first, "drive"), run_state(&first, "rest")),
         (RunState::Active, RunState::Active)
     );
-    // Its duration is over.
+    // Its duration has passed.
     assert_eq!(
         run_state(&at(&mut helm, 0.9, -30.0), "rest"),
         RunState::Active
@@ -181,7 +181,7 @@ fn mates_count_when_they_have_sent_everything_that_is_asked() {
         mine.receive(received);
         assert_eq!(weight(&mut mine), want, "{received:?}");
     }
-    // Words from a boat that is not a mate, and about an unknown variable.
+    // Messages from a boat that is not a mate, and about an unknown variable.
     mine.receive(&[
         Word {
             vehicle: VehicleId(2),

@@ -160,7 +160,7 @@ pub(crate) fn within(stream: &mut Stream, most: f64) -> Ned {
     }
 }
 
-/// The own ship's present motion.
+/// Own ship's present motion.
 pub(crate) fn preference(stream: &mut Stream, grid: &Grid) -> Preference {
     Preference {
         course_rad: stream.between(-7.0, 7.0),

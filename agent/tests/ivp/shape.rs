@@ -5,7 +5,7 @@ use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Side};
 use primitives::Ned;
 use primitives::stream::Stream;
 
-/// Single-precision error over some hundred metres, in points of utility.
+/// Single-precision error over a few hundred metres, in points of utility.
 const TOLERANCE: f64 = 0.01;
 
 fn near(got: f32, want: f64, what: &str) {

@@ -6,7 +6,7 @@ use primitives::Ned;
 use primitives::stream::Stream;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// An isometry of the plane that fixes the own ship.
+/// An isometry of the plane that fixes own ship.
 #[derive(Clone, Copy, Debug)]
 enum Motion {
     HalfTurn,

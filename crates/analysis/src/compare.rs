@@ -275,7 +275,7 @@ fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> Eve
         only_in_a.extend(of_a);
         only_in_b.extend(of_b);
     }
-    // After the end of the shorter game, no event counts as missing.
+    // After the end of the shorter game, no event is counted as missing.
     for only in [&mut only_in_a, &mut only_in_b] {
         only.retain(|event: &EventOutcome| event.at_s <= until_s);
         only.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));

@@ -82,7 +82,7 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
         };
         if let Some(state) = event["event"]["state"]["to"].as_str() {
             gateway.state = Some(state.to_owned());
-            // It has no status in which they are listed.
+            // It has no status that lists them.
             if let Some(cause) = state
                 .strip_prefix("failsafe: ")
                 .filter(|_| bag.kind == Kind::Gateway)

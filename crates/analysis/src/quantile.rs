@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// The number of mantissa bits dropped: 7 of 52 are kept.
 const DROPPED_BITS: u32 = 52 - 7;
-/// Values below share a bin, and so do values above.
+/// Values below the smallest bin share a bin, and so do values above the largest.
 const RANGE: (f64, f64) = (1e-3, 1e9);
 
 /// A histogram of non-negative values.
@@ -33,8 +33,8 @@ impl Quantile {
         self.count += 1;
     }
 
-    /// The smallest value not exceeded by this share of the values, by nearest rank; up to one part
-    /// in 128 too large. None without values.
+    /// The quantile at this fraction of the values, by nearest rank; up to one part in 128 too large. None without
+    /// values.
     pub(crate) fn at(&self, share: f64) -> Option<f64> {
         let rank = ((share * self.count as f64).ceil() as u64).max(1);
         let mut reached = 0;

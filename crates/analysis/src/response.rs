@@ -325,7 +325,7 @@ mod tests {
         assert_eq!(
             (got.heading_lag_s, got.speed_lag_s),
             (None, None),
-            "an order that never varies tells no delay"
+            "an order that never varies determines no delay"
         );
     }
 }

@@ -1,7 +1,7 @@
 //! Heap allocations of a whole decision: pictures, minds, ticks and the referee.
 //!
-//! `stats_alloc` counts, see `sim/tests/allocation.rs`; this file has one test, because it counts
-//! the whole process.
+//! `stats_alloc` counts them (see `sim/tests/allocation.rs`). This file has a single test, because the count covers the
+//! whole process.
 
 use scenario::Scenario;
 use sim::Contest;
@@ -12,7 +12,7 @@ use std::path::Path;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Decisions until everything has happened once, captures and a tag: every list has grown.
+/// Decisions until everything, captures and a tag, has happened once, so that every list has grown.
 const WARM_UP: u64 = 4_100;
 
 #[test]

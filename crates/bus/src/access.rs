@@ -1,7 +1,7 @@
 //! The rights of other nodes at a hub: the rules for zenoh's access control.
 //!
 //! Everything that no rule allows is denied. The rules bind nodes linked to the hub, not the hub's
-//! own session. What only the sim may do therefore needs no rule: publish pictures and gateway
+//! own session. Actions reserved for the sim therefore need no rule: publish pictures and gateway
 //! reports, answer its own queries, show the sim's liveliness token, and receive orders, navigation
 //! and reports. Without keys, all other nodes have the same rights; with keys, each has the rights
 //! of its role.
@@ -26,8 +26,8 @@ struct Rights {
 /// Any node that reaches a hub without keys.
 const ANYBODY: Rights = Rights {
     publishes: &[
-        // Everything below, not one level: without keys the team in the key proves nothing, and the
-        // sim checks the ticket of each order anyway.
+        // All levels below, not just one: without keys the team in the key proves nothing, and the sim checks the
+        // ticket of each order anyway.
         "order/**",
         "say/{team}",
         "policy/{boat}",
@@ -115,8 +115,8 @@ const OBSERVER: Rights = Rights {
     answers: &[],
     ..ANYBODY
 };
-// The only role admitted to `operate`: with keys no token is required as well, since it would be a
-// second secret for the same right.
+// The only role admitted to `operate`: with keys no additional token is required, since it would be a second secret for
+// the same right.
 const OPERATOR: Rights = Rights {
     publishes: &["control", "stop/{boat}", "policy/{boat}"],
     asks: &[
@@ -146,9 +146,9 @@ fn rights(identity: &Identity) -> &'static Rights {
     }
 }
 
-/// Whether a node may query `key` at all; without the right, no answer ever comes.
+/// Whether a node may query `key` at all; without the right, it never gets a reply.
 pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
-    // Checks the kind alone, to spare a node without the right the wait for an answer. The hub's
+    // Checks only the kind, so that a node without the right does not wait for a reply. The hub's
     // rule, with topics spelled out, is binding.
     let kind = key.split('/').nth(2);
     rights(identity)

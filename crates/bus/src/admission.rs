@@ -124,7 +124,7 @@ impl Port {
                 found.insert(ends, descriptor);
             }
         }
-        // Connections that became links meanwhile are known by now.
+        // Connections that have become links in the meantime are known by now.
         let links = links.lock().clone();
         let lent: Vec<(Ends, RawFd)> = found
             .iter()
@@ -142,8 +142,7 @@ impl Port {
         found.retain(|ends, _| !links.contains(ends));
         self.slots.retain(|ends, _| found.contains_key(ends));
         for (ends, descriptor) in found {
-            // Mapped IPv4 addresses count as IPv4; otherwise one host would have two shares of the
-            // port.
+            // Mapped IPv4 addresses count as IPv4; otherwise one host would have two allowances on the port.
             let admit = || {
                 self.waiting.admit(ends.1.ip().to_canonical(), move || {
                     descriptor::end(descriptor, ends)

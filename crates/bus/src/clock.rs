@@ -25,7 +25,7 @@ pub fn rest(time: Duration) {
     runtime().sleep(time);
 }
 
-/// The current time since 1970, ns: for other systems that ask for it. Squall never compares it.
+/// The current time since 1970, ns: for other systems that need it. Squall never compares it.
 pub fn unix_ns() -> i64 {
     i64::try_from(time::OffsetDateTime::now_utc().unix_timestamp_nanos()).unwrap_or(i64::MAX)
 }

@@ -20,7 +20,7 @@ type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 /// commands are queries to the sim.
 ///
 /// # Errors
-/// [`BusError`] if the sim refuses or does not answer (gateways may still have received a stop), if
+/// [`BusError`] if the sim refuses or does not respond (gateways may still have received a stop), if
 /// it requires an unknown token, or if the session is closed.
 ///
 /// # Panics
@@ -67,13 +67,12 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
     Ok(None)
 }
 
-/// Queries the sim. On a slow link, the next query goes out before the answer to this one arrives.
+/// Queries the sim. On a slow link, the next query is sent before the reply to this one arrives.
 fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<Answered>) {
     let bus = bus.clone();
     let key = key.to_owned();
     let answered = Arc::clone(answered);
-    // In its own thread: a query blocks until answered or timed out, and the stop must be repeated
-    // meanwhile.
+    // In its own thread: a query blocks until answered or timed out, and the stop must be repeated in the meantime.
     let asked = start_thread("stop-question", move || {
         if let Some(reply) = bus.request(&key, &control, limit).transpose() {
             answered.visit(|answered| *answered = Some(reply));

@@ -38,7 +38,7 @@ pub(crate) fn all() -> io::Result<Vec<RawFd>> {
 /// A descriptor as a socket, whatever its kind: the system checks that at each call.
 #[expect(
     unsafe_code,
-    reason = "zenoh does not give its sockets away: only their numbers can be known"
+    reason = "zenoh does not expose its sockets: only their numbers can be found"
 )]
 fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
     // SAFETY: the number comes from the system, so it is not -1, and the descriptor is not closed

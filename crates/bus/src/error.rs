@@ -8,14 +8,14 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum BusError {
     /// The session could not be opened.
-    #[error("cannot open the network {what}: {reason}")]
+    #[error("cannot {what}: {reason}")]
     Open {
         /// The endpoint or role that failed to open.
         what: String,
         /// zenoh's error.
         reason: String,
     },
-    /// A setting of the configuration was refused.
+    /// A setting of the configuration was rejected.
     #[error("network setting {key} = {value}: {reason}")]
     Setting {
         /// The key of the setting.
@@ -34,10 +34,10 @@ pub enum BusError {
         reason: String,
     },
     /// The sim refuses, for this reason.
-    #[error("the sim refuses: {0}")]
+    #[error("refused by the sim: {0}")]
     Refused(String),
-    /// The sim does not answer.
-    #[error("the sim does not answer")]
+    /// The sim does not respond.
+    #[error("the sim does not respond")]
     Silent,
     /// The game requires its token.
     #[error(
@@ -95,8 +95,7 @@ pub(crate) fn reason(error: &zenoh::Error) -> String {
         .unwrap_or(&text)
         .trim_end_matches(['!', ' ']);
     if text.starts_with("Unable to connect to any of") {
-        return "nothing answers there; check the address and the port, and that the sim runs"
-            .to_owned();
+        return "no response; check the address and port, and that the sim is running".to_owned();
     }
     match text
         .rsplit_once(": ")
@@ -116,7 +115,7 @@ mod tests {
         for (text, want) in [
             (
                 "Unable to connect to any of [Single(tcp/10.0.0.5:1)]! at /a/b.rs:1.",
-                "nothing answers there; check",
+                "no response; check",
             ),
             (
                 "Can not create a new TCP listener bound to tcp/10.0.0.5:1: [10.0.0.5:1: Address already in use (os error \

@@ -41,7 +41,7 @@ pub enum Refusal {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotFound {
     /// The search timed out; the text names what was still missing.
-    #[error("no game to join after {0:.0?}: {1}")]
+    #[error("found no game to join within {0:.0?}: {1}")]
     InTime(Duration, String),
     /// The search can never succeed.
     #[error(transparent)]
@@ -52,8 +52,8 @@ impl From<BusError> for Missing {
     fn from(error: BusError) -> Missing {
         match error {
             BusError::NeedsToken
-            // Waiting does not fix these; a person has to act. All others may pass, such as a sim
-            // that starts later or an unplugged cable.
+            // Waiting does not fix these; they need a person's intervention. All others may pass, such as a sim that
+            // starts later or an unplugged cable.
             | BusError::WrongToken
             | BusError::Keys(_)
             | BusError::NeedsKeys(_)
@@ -139,8 +139,8 @@ pub fn find_game(
 ) -> Result<(Bus, GameName, GameInfo), Missing> {
     let bus = place.session(named, session)?;
     let (game, info) = choose_game(&bus, named)?;
-    // The sim may have started after the session was opened. Look up again with the game's name:
-    // without a name, the registry was asked for any game.
+    // The sim may have started after the session was opened. Look it up again with the game's name: without a name, the
+    // registry was asked for any game.
     let token = place.net(Some(&game))?.token;
     Ok((bus.with_token(token), game, info))
 }
@@ -148,7 +148,7 @@ pub fn find_game(
 /// The game of this name, or the only one on the network, with its details.
 ///
 /// # Errors
-/// [`Missing`] if it is not there yet, if there are several, or if its sim has another version.
+/// [`Missing`] if it does not exist yet, if there are several, or if its sim has another version.
 pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, GameInfo), Missing> {
     let game = named.map_or_else(|| only_game(bus), |game| Ok(game.clone()))?;
     let info = game_info(bus, &game)?;
@@ -159,7 +159,7 @@ pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, Gam
 fn only_game(bus: &Bus) -> Result<GameName, Missing> {
     let games = games(bus)?;
     match games.as_slice() {
-        // One game is the usual case, and requiring its name would be a nuisance. With several, a
+        // Usually there is only one game, and requiring its name would be a nuisance. With several, a
         // guess could join boats to another person's game.
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim found on the network".to_owned())),
@@ -195,10 +195,10 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
         let others = if others.is_empty() {
             String::new()
         } else {
-            format!("; there is {}", listed(&others))
+            format!("; running games: {}", listed(&others))
         };
         return Err(Missing::Yet(format!(
-            "no sim answers for game {:?}{others}",
+            "no sim is serving game {:?}{others}",
             game.as_str()
         )));
     };
@@ -240,7 +240,7 @@ pub struct Joined {
 /// Joins with these vehicles in this role, with the token from `place`.
 ///
 /// # Errors
-/// [`Missing`] if the sim does not answer or refuses, or if another node has a vehicle.
+/// [`Missing`] if the sim does not reply or refuses, or if another node has a vehicle.
 pub fn join(
     bus: &Bus,
     place: &Place,
@@ -252,7 +252,7 @@ pub fn join(
     // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // Gives the sim the node's session: the sim acts as soon as that link ends. A killed process
+    // Gives the sim the node's session, so that the sim can act as soon as that link ends. A killed process
     // closes its socket, and its boats hold in the same decision.
     let version = primitives::VERSION.to_owned();
     let node = bus.id();
@@ -269,7 +269,7 @@ pub fn join(
         ANSWER,
     )? {
         None => Err(Missing::Yet(
-            "the sim does not answer the join request".to_owned(),
+            "the sim does not reply to the join request".to_owned(),
         )),
         Some(JoinReply::Granted {
             ticket,

@@ -17,8 +17,7 @@ const ATTEMPTS: usize = 3;
 /// Queries the gateway whose control port is `at`, within `limit`.
 ///
 /// # Errors
-/// [`BusError`] if it cannot be reached or does not answer, or if it requires a token that is not
-/// known.
+/// [`BusError`] if it cannot be reached or does not respond, or if it requires an unknown token.
 pub fn ask_gateway(
     at: SocketAddr,
     token: Option<&Token>,
@@ -26,7 +25,7 @@ pub fn ask_gateway(
     limit: Duration,
 ) -> Result<OperatorReply, BusError> {
     let deadline = clock::now() + limit;
-    // Commands that need the token are sent once, even if the answer is lost: a second release
+    // Commands that need the token are sent only once, even if the reply is lost: a second release
     // could release a different stop.
     let repeats = if command.needs_token() {
         0

@@ -24,7 +24,8 @@ pub struct LinkLock(
 #[derive(Debug, Error)]
 pub enum LinkLockError {
     /// Another process holds it.
-    #[error("another gateway on this machine has the link {link}: {}", .holder.map_or("a process that is ending".to_owned(), |pid| format!("process {pid}")))]
+    #[error("another gateway on this machine holds the link {link}: {}", .holder.map_or("a process that is \
+        ending".to_owned(), |pid| format!("process {pid}")))]
     Held {
         /// The address of the link, as the user typed it.
         link: String,
@@ -124,7 +125,7 @@ mod tests {
     fn a_link_can_be_locked_only_once_until_its_holder_releases_it() {
         let link = format!("tcp://test-of-link-lock:{}", std::process::id());
         assert_eq!(LinkLock::holder(&link), None);
-        let lock = LinkLock::take(&link).expect("nobody has it");
+        let lock = LinkLock::take(&link).expect("nobody holds it");
         assert_eq!(LinkLock::holder(&link), Some(std::process::id()));
         let refused = LinkLock::take(&link).expect_err("it is locked");
         assert!(

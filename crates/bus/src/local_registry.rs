@@ -1,7 +1,7 @@
 //! The games and gateways running on this machine, one small file each: `list`, `watch` and `tell`
 //! find them without an address.
 //!
-//! A convenience only: a node with a given address never reads it.
+//! Only a convenience: a node with a given address never reads it.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ pub struct Entry {
     pub pid: u32,
     /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
-    /// Whether it is only the water of emulated boats, which commands use only if it is named.
+    /// Whether it is only the water of emulated boats; commands use this only if it is named.
     #[serde(default)]
     pub is_water: bool,
 }

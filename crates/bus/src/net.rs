@@ -176,7 +176,7 @@ impl Net {
             None => Config::default(),
             Some(path) => {
                 let refused = |reason| BusError::Open {
-                    what: path.display().to_string(),
+                    what: format!("use {}", path.display()),
                     reason,
                 };
                 // The library would read any file, whatever its type and size.
@@ -208,7 +208,7 @@ impl Net {
                 "connect_certificate": certificate, "connect_private_key": key,
             });
             set(&mut config, "transport/link/tls", &tls.to_string())?;
-            // Endpoints learnt from other nodes must use TLS too.
+            // Endpoints learned from other nodes must use TLS too.
             set(
                 &mut config,
                 "transport/link/protocols",

@@ -1,5 +1,5 @@
-//! The place of a game and its token. Both are looked up before each attempt to connect: the sim
-//! may start later than the searching node, and the next sim may have another place and token.
+//! The place of a game and its token. Both are looked up before every attempt to connect: the sim
+//! may start later than the searching node, and the next sim may have a different place and token.
 
 use crate::game_search::{Missing, Refusal};
 use crate::token::CurrentToken;

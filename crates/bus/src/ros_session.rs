@@ -1,6 +1,6 @@
 //! A session on the zenoh network of ROS 2 nodes (`rmw_zenoh`), separate from any game's network.
 //!
-//! Nothing here waits for a ROS 2 node: a link that cannot take a message at once loses it.
+//! Nothing here waits for a ROS 2 node: a link that cannot accept a message at once loses it.
 
 use crate::error::reason;
 use crate::parcel::Parcel;
@@ -26,10 +26,10 @@ pub struct RosSession {
 pub struct RosPublisher(ZenohSender);
 
 impl RosSession {
-    /// Connects to the router at `endpoint` as a client. If none runs on this machine, becomes it.
+    /// Connects to the router at `endpoint` as a client. If none is running on this machine, acts as the router.
     ///
     /// # Errors
-    /// [`BusError`] if the router is elsewhere and does not answer, if its port belongs to another
+    /// [`BusError`] if the router is elsewhere and does not respond, if its port belongs to another
     /// program, or if it is a Squall game.
     pub fn open(endpoint: &str) -> Result<RosSession, BusError> {
         let what = format!("of ROS 2 at {endpoint}");
@@ -49,7 +49,7 @@ impl RosSession {
                     });
                 }
                 session.close();
-                let reason = "a Squall game listens there: start the game with another --listen, or pass --router";
+                let reason = "a Squall game is listening there: start the game with another --listen, or pass --router";
                 Err(BusError::Open {
                     what,
                     reason: reason.to_owned(),

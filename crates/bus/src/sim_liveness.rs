@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How long a sim may be silent before it counts as dead.
+/// How long a sim may be silent before it is treated as lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
     /// Limit in every case.
@@ -23,7 +23,7 @@ pub struct Patience {
 
 impl Patience {
     /// The patience of nodes that play in the game: `silence` for a silent sim, and five seconds
-    /// for one that was heard until its token went.
+    /// for one that was heard until its token disappeared.
     pub fn of_player(silence: Duration) -> Patience {
         Patience {
             silence,
@@ -91,7 +91,7 @@ impl SimLiveness {
         }
     }
 
-    /// Chooses a sim that is present now, whichever was ours before. Returns whether one is
+    /// Chooses a sim that is present now, regardless of which one was ours before. Returns whether one is
     /// present.
     fn choose(&mut self) -> bool {
         (self.ours, self.is_replaced) = (self.tokens.first().cloned(), false);
@@ -196,7 +196,7 @@ mod tests {
     const SILENCE: u64 = 60;
 
     /// Simulates seconds from the start: whether the sim is heard, and whether its token is
-    /// present. Returns the second at which it counts as dead.
+    /// present. Returns the second at which it is treated as lost.
     fn died(
         silence_s: u64,
         is_heard: impl Fn(u64) -> bool,
@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(
             died(2, |s| s <= 20, |s| s <= 20),
             Some(23),
-            "who wants to know sooner does"
+            "a node with less patience notices sooner"
         );
     }
 
@@ -304,7 +304,7 @@ mod tests {
             (sim.is_there(), sim.state(now)),
             (Some(false), SimState::Replaced)
         );
-        assert!(sim.choose(), "whoever can begin again goes by the new one");
+        assert!(sim.choose(), "a node that can begin again uses the new one");
         assert_eq!(
             (sim.is_there(), sim.state(now)),
             (Some(true), SimState::Alive)

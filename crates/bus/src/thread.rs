@@ -14,7 +14,7 @@ pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io
     runtime().spawn(name, Box::new(body)).map(drop)
 }
 
-/// How long a node waits for a thread that should end: the network may block it for 10 s.
+/// How long a node waits for a thread that should end: the network may block the thread for 10 s.
 const END_MAX: Duration = Duration::from_millis(1200);
 
 /// A thread that is joined on drop, unless it does not end soon. Its work must be over by then.

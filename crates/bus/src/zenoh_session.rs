@@ -44,7 +44,7 @@ impl ZenohSession {
     ) -> Result<ZenohSession, BusError> {
         let files = OpenFiles::reserve(FILES_MAX);
         let nodes = nodes_max(files);
-        let what = format!("to listen on {}", net.listen.join(", "));
+        let what = format!("listen on {}", net.listen.join(", "));
         let session = open(net.hub(game, scenario, nodes)?, what.clone())?;
         let begun = admission::begin(&session.0, net.ports(), files, nodes);
         begun.map_err(|e| BusError::Open {
@@ -59,7 +59,7 @@ impl ZenohSession {
         let endpoints = net.endpoints(&net.connect);
         open(
             net.leaf()?,
-            format!("to connect to {}", net.connect.join(", ")),
+            format!("connect to {}", net.connect.join(", ")),
         )
         .map_err(|error| {
             // zenoh does not report the cause.

@@ -1,4 +1,4 @@
-//! Keys of a game: which nodes are admitted, what each may do, and the errors of refused ones.
+//! Keys of a game: which nodes are admitted, what each may do, and the errors of those refused.
 
 use bus::keys::{Bundle, Identity, make};
 use bus::{Bus, BusError, Delivery, Net, Priority, Query, Watched, clock};
@@ -80,7 +80,7 @@ fn leaf(endpoint: &str, keys: Option<Arc<Bundle>>) -> Result<Bus, BusError> {
 
 fn refused(endpoint: &str, keys: Option<Arc<Bundle>>) -> String {
     match leaf(endpoint, keys) {
-        Ok(_) => panic!("it is let in"),
+        Ok(_) => panic!("it is admitted"),
         Err(error) => error.to_string(),
     }
 }
@@ -92,7 +92,7 @@ fn whose_keys_do_not_fit_is_told_why() {
     let elsewhere = keys(&["sim.example"], DAY);
     let (sim, endpoint) = hub(bundle(&own, "sim"));
     let _sim = sim.expect("it listens");
-    let blue = leaf(&endpoint, bundle(&own, "team-blue")).expect("it is let in");
+    let blue = leaf(&endpoint, bundle(&own, "team-blue")).expect("it is admitted");
     assert_eq!(
         blue.keys.as_ref().map(|keys| &keys.identity),
         Some(&team("blue"))
@@ -113,7 +113,7 @@ fn whose_keys_do_not_fit_is_told_why() {
     assert!(text.contains("not those of team-blue"), "{text}");
     assert!(
         matches!(leaf(&endpoint, None), Err(BusError::Open { .. })),
-        "nobody listens"
+        "nothing is listening"
     );
     let (sim, endpoint) = hub(bundle(&elsewhere, "sim"));
     let _sim = sim.expect("it listens");
@@ -200,7 +200,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
         [0o700, 0o600, 0o600]
     );
     let again = make(own.path(), &[Identity::Observer], &[], DAY)
-        .expect_err("it is there already")
+        .expect_err("it already exists")
         .to_string();
     assert!(again.contains("observer"), "{again}");
     assert_eq!(
@@ -226,7 +226,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         })
         .expect("open"),
     );
-    // Over QUIC in datagrams, which have the same rights as what is reliable.
+    // Over QUIC in datagrams, to which the same rights apply as to reliable messages.
     let publisher = |word| {
         from.publisher_with(key(word), Priority::Normal, Delivery::Newest)
             .expect("open")
@@ -235,7 +235,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     let sure = publisher(free);
     let start = clock::now();
     while !heard.wait(Duration::from_millis(20), |(_, free)| *free) {
-        assert!(clock::since(start) < LIMIT, "nothing comes through at all");
+        assert!(clock::since(start) < LIMIT, "nothing gets through at all");
         asked.send_raw(vec![1]).expect("open");
         sure.send_raw(vec![1]).expect("open");
     }
@@ -325,7 +325,7 @@ fn check_rights(transport: &str) {
     let own = keys(&["127.0.0.1"], DAY);
     let (sim, endpoint) = hub_over(transport, bundle(&own, "sim"));
     let sim = sim.expect("it listens");
-    let node = |identity: &str| leaf(&endpoint, bundle(&own, identity)).expect("it is let in");
+    let node = |identity: &str| leaf(&endpoint, bundle(&own, identity)).expect("it is admitted");
     let nodes = [
         "team-blue",
         "team-red",
@@ -375,7 +375,7 @@ fn check_rights(transport: &str) {
         assert_eq!(
             matches!(asked, Err(BusError::NotAllowed { .. })),
             *name != "operator",
-            "{name} is told so at once"
+            "{name} is told at once"
         );
     }
     // An operator's query reaches the gateway of the boat, and no other.

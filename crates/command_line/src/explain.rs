@@ -1,4 +1,4 @@
-//! Explains errors in scenario files, each with the line in question.
+//! Explains errors in scenario files, each with the line it refers to.
 
 use crate::{style, terminal};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -11,7 +11,7 @@ use std::process::ExitCode;
 /// The width limit of a quoted line, columns.
 const COLUMNS: usize = 100;
 
-/// A mistake in the command line that the parser of arguments cannot find.
+/// A mistake in the command line that the argument parser cannot detect.
 #[derive(Debug)]
 pub struct UsageError(pub String);
 
@@ -30,8 +30,8 @@ impl fmt::Display for UsageError {
 
 impl std::error::Error for UsageError {}
 
-/// Prints an error and returns the exit code: 2 for a mistake in the command line, as after errors
-/// of the parser, otherwise 1.
+/// Prints an error and returns the exit code: 2 for a mistake in the command line, as for errors of the argument
+/// parser, otherwise 1.
 pub fn report(error: &Error) -> ExitCode {
     let is_option = |problem: &Problem| problem.place().starts_with("--");
     let is_usage = |cause: &(dyn std::error::Error + 'static)| {

@@ -1,4 +1,4 @@
-//! Command line arguments for how a process reaches a game: where it is, its name, keys and token.
+//! Command line arguments for how a process reaches a game: its address, name, keys and token.
 
 use crate::explain::UsageError;
 use crate::number::endpoint;
@@ -98,8 +98,8 @@ pub struct LeafArgs {
 }
 
 impl LeafArgs {
-    /// The gateways on this machine that a command may address. For a game elsewhere, these are the
-    /// gateways of that game. A stop errs on the side of addressing more.
+    /// The gateways on this machine that a command may address. For a game elsewhere, these are that game's gateways. A
+    /// stop addresses too many rather than too few.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
@@ -114,7 +114,7 @@ impl LeafArgs {
         !self.connect.is_empty() && net.connect == self.connect
     }
 
-    /// Whether they leave the choice of a game to this machine, and none is running here.
+    /// Whether they do not select a game and none is running on this machine.
     pub fn finds_no_game(&self) -> bool {
         let names_place = self.game.is_some()
             || self.lan
@@ -137,7 +137,7 @@ impl LeafArgs {
     }
 
     /// Checks that a command for all boats of a game, sent to these gateways, refers to only one
-    /// game. Stops need no check: they go to as many boats as can be reached.
+    /// game. Stops need no check: they are sent to as many boats as possible.
     ///
     /// # Errors
     /// If there are several games; the error names them.
@@ -176,7 +176,7 @@ impl LeafArgs {
         }))
     }
 
-    /// The place of this game, or else of the given one.
+    /// The place of this game, or otherwise of the given one.
     fn net_of(&self, game: Option<&GameName>, keys: Option<Arc<Bundle>>) -> Result<Net> {
         let game = game.or(self.game.as_ref());
         let mut connect = self.connect.clone();
@@ -223,7 +223,7 @@ fn local_endpoint(known: &[bus::Entry]) -> Result<String> {
 fn several_games<'a>(names: impl Iterator<Item = &'a str>) -> UsageError {
     let names: Vec<&str> = names.collect();
     UsageError(format!(
-        "several games run on this machine; select one with --game: {}",
+        "several games are running on this machine; select one with --game: {}",
         names.join(", ")
     ))
 }

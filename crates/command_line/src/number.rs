@@ -75,7 +75,7 @@ pub fn endpoint(text: &str) -> Result<String, String> {
 /// Parses the name or the IP address of a machine from the command line.
 ///
 /// # Errors
-/// If it has other characters than those of names and addresses.
+/// If it has characters that names and addresses cannot have.
 pub fn host(text: &str) -> Result<String, String> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.:".contains(c);
     let is_host = !text.is_empty() && text.chars().all(is_plain);

@@ -49,7 +49,7 @@ pub fn named(word: &str) -> Result<PathBuf> {
         .into_iter()
         .find(|path| stem(path).contains(word));
     found.ok_or_else(|| {
-        anyhow!("there is no recording {word} in {FOLDER}; list the recordings with: squall runs")
+        anyhow!("no recording matches {word:?} in {FOLDER}/; list the recordings with: squall runs")
     })
 }
 
@@ -60,9 +60,9 @@ pub fn or_newest(given: Option<&Path>) -> Result<PathBuf> {
     }
     let newest = runs(Path::new(FOLDER)).into_iter().next();
     let newest = newest.with_context(|| {
-        format!("there is no recording in {FOLDER}; record a game, for example with: squall run strategy_4_vs_3")
+        format!("no recordings in {FOLDER}/; record a game, for example with: squall run strategy_4_vs_3")
     })?;
-    terminal::remark(&format!("the newest recording: {}", newest.display()));
+    terminal::remark(&format!("using the newest recording: {}", newest.display()));
     Ok(newest)
 }
 
@@ -72,8 +72,8 @@ pub fn open(file: &Path, to: &str) -> Result<Recording> {
     Recording::of_bag(bag).with_context(|| format!("cannot {to} {}", file.display()))
 }
 
-/// Opens a recording of any kind, or the MOOS logs of a game: one, or all in a folder. A game file
-/// in the folder of the logs says which game it was.
+/// Opens a recording of any kind, or the MOOS logs of a game: one, or all in a folder. A game file in the folder of the
+/// logs identifies the game.
 pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     let opened = if file.is_dir() || alog::is_log(file) {
         let Logs { files, game } = logs(file)?;
@@ -84,7 +84,7 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
         Bag::open(file)
     };
     let bag = opened.map_err(|error| match error {
-        // These name the file.
+        // These errors name the file.
         RecordingError::File { .. } | RecordingError::Log(_) => Error::new(error),
         error => Error::new(error).context(format!("cannot {to} {}", file.display())),
     })?;
@@ -110,7 +110,7 @@ struct Logs {
     game: Option<PathBuf>,
 }
 
-/// Finds MOOS logs: a file, or those in a folder and its folders, such as a mission's.
+/// Finds MOOS logs: a file, or all logs in a folder and its subfolders, such as a mission's.
 fn logs(path: &Path) -> Result<Logs> {
     let folder = match path.parent() {
         _ if path.is_dir() => path,
@@ -122,7 +122,7 @@ fn logs(path: &Path) -> Result<Logs> {
         files.filter_map(Result::ok).map(|file| file.path())
     };
     let is_game = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
-    // Of several, the first by name: folders are listed in no order.
+    // Of several, the first by name: folders are listed in no particular order.
     let game = listed(folder).filter(is_game).min();
     let mut files: Vec<PathBuf> = if path.is_dir() {
         listed(path)
@@ -135,7 +135,7 @@ fn logs(path: &Path) -> Result<Logs> {
     files.sort();
     if files.is_empty() {
         bail!(
-            "{} has no MOOS logs, which begin with a line of %",
+            "{} contains no MOOS logs, which begin with a line of %",
             path.display()
         );
     }

@@ -31,8 +31,8 @@ pub fn install(kinds: &'static [Kind]) {
     );
 }
 
-/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes
-/// leave that to their parent.
+/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes leave this to their
+/// parent.
 pub fn announce(path: &Path) {
     static ANNOUNCED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let is_child = std::env::args_os().any(|word| word == "--for-parent");
@@ -118,7 +118,7 @@ pub fn find_any(word: &str) -> Result<Vec<PathBuf>> {
         let known: BTreeSet<String> = kinds().iter().flat_map(|kind| all_names(*kind)).collect();
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
         bail!(
-            "there is no scenario file {word}{}; list them with: squall files",
+            "no scenario file named {word:?}{}; list them with: squall files",
             did_you_mean(word, &known)
         );
     }
@@ -134,7 +134,7 @@ pub fn find_policy(word: &str) -> Result<PathBuf> {
         let known = policies();
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
         anyhow!(
-            "there is no policy {word}, expected the path of a file or one of {}",
+            "no policy named {word:?}, expected the path of a file or one of {}",
             known.join(", ")
         )
     })
@@ -173,7 +173,7 @@ fn located(
         .into_iter()
         .map(|folder| folder.join(&file));
     if let Some(path) = paths.find(|path| path.is_file()) {
-        // As a user would type it, so that the printed path can be read again.
+        // As a user would type it, so that the printed path can be used in a command.
         let here = std::env::current_dir().unwrap_or_default();
         return Some(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
     }
@@ -184,7 +184,7 @@ fn unknown(word: &str, kind: Kind, beside: Option<&Path>) -> anyhow::Error {
     let mut others = kinds().iter().copied().filter(|other| *other != kind);
     if let Some(other) = others.find(|other| all_names(*other).contains(word)) {
         return anyhow!(
-            "there is no {kind} {word}, but there is a {other} of that name{}",
+            "no {kind} named {word:?}, but there is a {other} with that name{}",
             where_it_goes(other)
         );
     }
@@ -204,7 +204,7 @@ fn unknown(word: &str, kind: Kind, beside: Option<&Path>) -> anyhow::Error {
     } else {
         guess
     };
-    anyhow!("there is no {kind} {word}{list}")
+    anyhow!("no {kind} named {word:?}{list}")
 }
 
 /// The places where a file of a kind is accepted.
@@ -277,7 +277,7 @@ fn name_of(path: &Path, extension: &str) -> Option<String> {
     is_wanted.then(|| path.file_stem()?.to_str().map(str::to_owned))?
 }
 
-/// Whether the name of a file ends as those of scenario files, on Windows also with capitals.
+/// Whether a file's name ends like a scenario file's; on Windows, case is ignored.
 pub fn is_toml(path: &Path) -> bool {
     path.extension()
         .is_some_and(|end| end.eq_ignore_ascii_case("toml"))

@@ -28,12 +28,12 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
 }
 
 /// Ends the process soon after the flag is set, even if it is still busy or waits for the network:
-/// for commands that leave complete files whenever they end.
+/// for commands whose files are complete whenever they end.
 pub fn exit_when_late(stop: &Arc<AtomicBool>) {
     when_late(stop, || std::process::exit(130));
 }
 
-/// Acts if the command has not ended soon after the flag is set.
+/// Takes effect if the command has not ended soon after the flag is set.
 pub fn when_late(stop: &Arc<AtomicBool>, act: impl FnOnce() + Send + 'static) {
     const LATE: Duration = Duration::from_millis(1400);
     let flag = Arc::clone(stop);

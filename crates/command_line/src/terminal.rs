@@ -80,7 +80,7 @@ pub fn complain(text: &str) {
     complain_as(program::name(), text);
 }
 
-/// Prints an error after this word in place of the program's name.
+/// Prints an error, with this word instead of the program's name.
 pub fn complain_as(who: &str, text: &str) {
     let text = printable::coloured_message(text);
     drop(writeln!(
@@ -90,7 +90,7 @@ pub fn complain_as(who: &str, text: &str) {
     ));
 }
 
-/// Prints a text to standard error, where it does not mix with results.
+/// Prints a text to standard error, so that it does not mix with results.
 pub fn remark(text: &str) {
     drop(writeln!(
         anstream::stderr(),

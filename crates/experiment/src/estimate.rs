@@ -28,9 +28,9 @@ impl Estimate {
         assert!(count > 0, "a mean needs values");
         let (mean, squares) = mean_and_squares(observations);
         let degrees = count as f64 - 1.0;
-        // Over seeds: all games of a seed have the same sea, which favours an entry from both sides
-        // and against all opponents alike. The interval covers other seeds, not other opponents,
-        // which are chosen and not drawn.
+        // Over seeds: all games with the same seed have the same sea, which may favour an entry from both sides and
+        // against all opponents alike. The interval covers other seeds, not other opponents, which are chosen and not
+        // drawn.
         let quantile = quantile(degrees).filter(|_| count >= OBSERVATIONS_MIN);
         let half = quantile.map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate {
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_ratio_is_the_share_of_successes_with_the_interval_of_a_proportion() {
-        // 700 successes in 1000 independent trials, and 1000 trials that do not count.
+        // 700 successes in 1000 independent trials, and 1000 trials that are not counted.
         let trials: Vec<(f64, f64)> = (0..2000)
             .map(|i| {
                 if i < 1000 {
@@ -143,7 +143,7 @@ mod tests {
             (estimate.mean - 0.7).abs() < 1e-12 && (half - want).abs() < 0.0001,
             "{estimate:?}, not {want}"
         );
-        // A share that is equal in every observation is known exactly, whatever the wholes.
+        // A ratio that is equal in every observation is known exactly, whatever the wholes.
         let equal =
             Estimate::of_ratio(&[(1.0, 2.0), (4.0, 8.0), (2.0, 4.0), (1.0, 2.0), (3.0, 6.0)])
                 .expect("wholes");

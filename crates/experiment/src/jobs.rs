@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Upper bound of threads per core: more only take turns.
+/// Upper bound of threads per core: more would only take turns.
 const PER_CORE_MAX: usize = 4;
 
 /// Upper bound of the games of an experiment, whose results are kept in memory.
@@ -40,11 +40,8 @@ pub(crate) fn load_game(
 
 /// The problem with an experiment whose file requests too many games.
 pub(crate) fn too_many_games(games: usize, file: &Path) -> Option<Problem> {
-    let message = || {
-        format!(
-            "there are {games} games in all, expected at most {GAMES_MAX}; reduce games or entries"
-        )
-    };
+    let message =
+        || format!("{games} games in all, expected at most {GAMES_MAX}; reduce games or entries");
     (games > GAMES_MAX).then(|| Problem::of_file(file.to_owned(), message()))
 }
 

@@ -1,4 +1,4 @@
-//! Futures of a recorded game: the same past up to a moment, and then other minds and other draws.
+//! Futures of a recorded game: the same past up to a given time, and then other minds and other random numbers.
 
 use crate::pipeline::{Game, play_in_order};
 use agent::MindRunner;
@@ -12,14 +12,14 @@ use sim::{Contest, NoStart};
 use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
 
-/// A game up to a moment.
+/// A game up to a given time.
 #[derive(Clone)]
 pub struct Past {
     /// The game, with its seed.
     pub scenario: Scenario,
     /// All inputs of the recorded game, in order.
     pub inputs: Vec<Input>,
-    /// The moment from which futures differ: the time of a decision.
+    /// The time of the decision after which futures differ.
     pub until: SimTime,
 }
 
@@ -113,7 +113,7 @@ pub fn play(
     Ok(moment.end(changes, watch))
 }
 
-/// Plays futures numbered from 0: each as recorded and with the changes, both with the same draws.
+/// Plays futures numbered from 0: each as recorded and with the changes, both with the same random numbers.
 /// Passes the games to `take` in order.
 ///
 /// # Errors
@@ -144,6 +144,6 @@ pub fn compare(
 
 /// The seed of a future.
 pub fn seed_of(past: &Past, future: usize) -> u64 {
-    // Far from the seeds that people use: the first future is not another recorded game's.
+    // Far from the seeds that people use, so that the first future is not that of another recorded game.
     past.scenario.seed.wrapping_add(1_000_003 + future as u64) & (i64::MAX as u64)
 }

@@ -1,5 +1,5 @@
-//! A sweep in a folder: complete, or interrupted and resumed, on any number of threads; errors are
-//! reported before any game.
+//! A sweep in a folder, complete or interrupted and resumed, on any number of threads. Errors are reported before any
+//! game.
 
 use experiment::sweep::Sweep;
 use experiment::sweep::{self, Plan, Study, StudyError};
@@ -122,7 +122,10 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
         );
         go_on(&mut study, &plan, 24, 3);
         study.report(&plan).unwrap();
-        assert!(files(&cut) == want, "cut by {games} and {boats} bytes");
+        assert!(
+            files(&cut) == want,
+            "truncated by {games} and {boats} bytes"
+        );
     }
 
     // A full disk leaves files empty or missing, and any digit may change.

@@ -1,6 +1,6 @@
 //! Tournaments: reproducible on any number of threads, fair to both sides, and with honest
 //! intervals.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 use experiment::Game;
 use experiment::tournament::{Cell, Match, Plan, Record, Report, play};
@@ -137,7 +137,7 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
             "{of:?}"
         );
     }
-    // The attacker never loses to the idle entry, but as the second team it finds it in its way.
+    // The attacker never loses to the idle entry, but as the second team it finds it in the way.
     let report = Report::new(&plan, &records);
     let names: Vec<&str> = report.entries.iter().map(|row| row.name.as_str()).collect();
     assert_eq!(
@@ -381,7 +381,7 @@ fn equal_entries_are_equal_to_the_last_digit() {
     );
     assert_eq!(
         one.games, 16,
-        "four seeds, twice against the other, and against itself from both sides"
+        "four seeds, each twice against the other and against itself from both sides"
     );
     assert_eq!(report.matrix.len(), 4);
     for cell in &report.matrix {
@@ -404,7 +404,7 @@ fn a_tournament_that_is_stopped_keeps_whole_seeds() {
     });
     assert_eq!(records.len(), shown);
     assert!((3..40).contains(&shown), "{shown} games");
-    // Whatever games were running, three games are one seed and a half.
+    // Whatever games were running, three games are one and a half seeds.
     let report = Report::new(&plan, &records[..3]);
     assert_eq!(
         (

@@ -1,4 +1,4 @@
-//! Runs targets for some seconds each, or one target on a file.
+//! Runs targets for a few seconds each, or one target on a file.
 
 use squall_fuzz::{TARGETS, Target, named, soak};
 use std::path::{Path, PathBuf};

@@ -145,7 +145,7 @@ fn main() {
     } else {
         NAMES.to_vec()
     };
-    println!("                            means over time          a minute of the team");
+    println!("                            means over time          per minute and team");
     println!(
         "policy    boats     reward  home guard shield clear  grabs  tags tagged grabbed  left"
     );

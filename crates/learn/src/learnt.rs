@@ -13,9 +13,9 @@ pub struct Learnt {
     pub entropy: Option<f32>,
     /// KL divergence of the new policy from the old one, nats.
     pub divergence: Option<f32>,
-    /// Share of clipped samples.
+    /// Fraction of clipped samples.
     pub clipped: Option<f32>,
-    /// Share of the returns' variance that the critic explained before the update: 1 for a perfect
+    /// Fraction of the returns' variance that the critic explained before the update: 1 for a perfect
     /// critic, at most 0 for a useless one.
     pub explained_variance: Option<f32>,
     /// Epochs; with a replay buffer, samples drawn per sample stored.

@@ -278,7 +278,7 @@ pub enum JoinReply {
         ticket: u64,
         /// The vehicles, in the requested order.
         vehicles: Vec<VehicleId>,
-        /// Game time of joining. Earlier messages were not for this node.
+        /// Game time of joining. Earlier messages are not for this node.
         now_ns: SimTime,
     },
     /// Another node has the vehicle. A later retry may succeed.
@@ -299,7 +299,7 @@ pub enum JoinReply {
 pub enum Control {
     /// Ends the game now.
     Stop,
-    /// Pauses the game. Real boats hold meanwhile.
+    /// Pauses the game. Real boats hold in the meantime.
     Pause,
     /// Resumes a paused game.
     Resume,

@@ -220,7 +220,7 @@ impl Picture {
         (before - count(self)) as u64
     }
 
-    /// The own boat `vehicle`, if it is of this team.
+    /// The team's own boat `vehicle`; `None` if it belongs to another team.
     pub fn own(&self, vehicle: VehicleId) -> Option<&OwnBoat> {
         self.own
             .binary_search_by_key(&vehicle, |boat| boat.vehicle)

@@ -23,7 +23,7 @@ impl GameName {
             Ok(GameName(name.to_owned()))
         } else {
             Err(format!(
-                "game name is {name:?}, expected 1 to 64 of a-z, 0-9, _ and -"
+                "game name is {name:?}, expected 1 to 64 characters from a-z, 0-9, _ and -"
             ))
         }
     }

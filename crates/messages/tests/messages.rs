@@ -1,4 +1,4 @@
-//! Messages match their `.msg` files, survive a round trip, and are refused when damaged.
+//! Messages match their `.msg` files, survive a round trip, and are rejected when damaged.
 
 use messages::external::{ExternalOrder, LinkBytes, NavReport};
 use messages::input::Inputs;
@@ -55,7 +55,7 @@ fn ros_type(format: &Format) -> String {
         Format::Str => "string".into(),
         Format::Seq(item) => format!("{}[]", ros_type(item)),
         Format::TypeName(name) => format!("squall_msgs/{name}"),
-        other => panic!("ROS 2 cannot say {other:?}"),
+        other => panic!("ROS 2 cannot express {other:?}"),
     }
 }
 
@@ -137,7 +137,7 @@ fn orders() -> Orders {
 
 #[test]
 fn the_bytes_are_cdr_as_other_programs_read_it() {
-    // Written by hand from the CDR rules: header, then every number at a multiple of its size.
+    // Written by hand from the CDR rules: the header, then every number at a multiple of its size.
     let mut want = vec![0, 1, 0, 0];
     want.extend(1_250_000_000_i64.to_le_bytes());
     want.extend(12_u64.to_le_bytes());
@@ -202,8 +202,8 @@ fn inputs_are_read_as_they_were_written_before_orders_had_a_time_and_no_older() 
     }
 }
 
-/// A message survives a round trip; truncated, extended, in another byte order or from another
-/// version, it is refused with the reason.
+/// A message survives a round trip. If it is truncated, extended, in another byte order or from another version, it is
+/// rejected and the reason given.
 fn survives_or_is_refused<M>(message: &M)
 where
     M: Message + serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,

@@ -1,4 +1,4 @@
-//! The orders of a boat's MOOS applications: what they have requested last, while it is recent.
+//! The orders of a boat's MOOS applications: their last requests, as long as these are recent.
 
 use crate::wire::Msg;
 use messages::Order;
@@ -21,7 +21,7 @@ pub(crate) const READS: [&str; 10] = [
     "IVPHELM_ALLSTOP",
 ];
 
-/// Variables of which one tells that a boat has its helm or its controller.
+/// Variables that show that a boat has its helm or its controller.
 pub(crate) const HELM: [&str; 7] = [
     "IVPHELM_STATE",
     READS[0],
@@ -46,7 +46,7 @@ pub(crate) struct BackSeat {
     desired: [Option<Desired>; 6],
     /// `DEPLOY` is false: the boat must not move.
     is_undeployed: bool,
-    /// A person has taken the boat from its helm.
+    /// A person has overridden the helm.
     is_overridden: bool,
     /// Why the helm has stopped the boat, if so.
     all_stop: Option<String>,
@@ -87,9 +87,8 @@ impl BackSeat {
         }
     }
 
-    /// The order now: thrust and rudder before heading and speed, because a controller that makes
-    /// the former of the latter runs after the helm. Without a complete pair of requests younger
-    /// than `ttl_s`, the boat holds.
+    /// The order now: thrust and rudder before heading and speed, because a controller that converts the latter to the
+    /// former runs after the helm. Without a complete pair of requests younger than `ttl_s`, the boat holds.
     pub(crate) fn order(&mut self, now: SimTime, ttl_s: f64) -> Order {
         if self.is_undeployed || self.is_overridden || self.all_stop.is_some() {
             return Order::Hold;

@@ -57,7 +57,7 @@ pub struct BoatMind {
     /// The time of the last sighting of each contact that was published.
     seen: BTreeMap<VehicleId, SimTime>,
     has_begun: bool,
-    /// When the helm last told its state.
+    /// When the helm last reported its state.
     helm_at: Option<SimTime>,
     /// Whether the boat was at its own flag at the last picture.
     was_home: bool,
@@ -215,7 +215,7 @@ impl BoatMind {
             .own_flags(team)
             .any(|(_, home)| home.distance(at) < scenario.rules.untag_radius_m);
         if is_home && !std::mem::replace(&mut self.was_home, is_home) {
-            // Missions set `TAGGED` themselves to send a boat home: there it is true again.
+            // Missions set `TAGGED` themselves to send a boat home: that makes it true again.
             ["TAGGED", "HAS_FLAG"]
                 .iter()
                 .for_each(|key| community.forget(key));
@@ -284,7 +284,7 @@ pub(crate) fn mode_of(is_tagged: bool, carrying: i16) -> &'static str {
     }
 }
 
-/// A contact's motion; its velocity counts as ahead.
+/// A contact's motion; its velocity is treated as ahead.
 fn nav_of(contact: &Contact) -> Nav {
     Nav {
         north_m: contact.north_m,

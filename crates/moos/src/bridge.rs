@@ -35,7 +35,7 @@ pub struct Settings {
     pub place: Place,
     /// Maximum time to search for the sim and to wait for free boats.
     pub wait: Duration,
-    /// Without a picture for this long, the sim counts as gone.
+    /// After this long without a picture, the sim is treated as lost.
     pub silence: Duration,
     /// Set from outside to leave the game.
     pub stop: Arc<AtomicBool>,
@@ -61,7 +61,7 @@ pub enum News<'a> {
     Open(Vec<String>),
     /// The boats are in the game.
     Joined(&'a str),
-    /// Something for the person who runs the bridge.
+    /// A note for the person who runs the bridge.
     Note(String),
 }
 
@@ -350,7 +350,7 @@ impl Bridge<'_> {
             {
                 let warp = self.moos.warp;
                 (self.tell)(News::Note(format!(
-                    "the game now runs at {speed}x, but MOOSTimeWarp stays {warp}"
+                    "the game is now running at {speed}x, but MOOSTimeWarp remains {warp}"
                 )));
                 told_speed = speed;
             }
@@ -375,7 +375,7 @@ fn boats(settings: &Settings, scenario: &Scenario) -> Result<Vec<(String, Addres
         };
         let index = scenario.teams.iter().position(|known| known.name == *team);
         let index =
-            index.ok_or_else(|| format!("there is no team {team:?}; there are {}", names()))?;
+            index.ok_or_else(|| format!("no team named {team:?}; the teams are: {}", names()))?;
         for boat in scenario
             .vehicles
             .iter()

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::str::FromStr;
 
-/// Where a community's database is.
+/// The location of a community's database.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// Served by the bridge at this address.
@@ -61,7 +61,7 @@ enum Link {
 pub struct Community {
     /// Its name.
     pub name: String,
-    /// Where its database is, in words.
+    /// The location of its database, in words.
     pub place: String,
     link: Link,
     moos: MoosClock,
@@ -201,7 +201,7 @@ impl Community {
         }
     }
 
-    /// Whether what is published now arrives.
+    /// Whether values published now will arrive.
     pub(crate) fn is_reachable(&self) -> bool {
         matches!(self.link, Link::Served(_)) || self.presence().1
     }
@@ -213,7 +213,7 @@ impl Community {
             Link::Remote(remote) => {
                 let (heard, notes, is_connected) = remote.take_heard();
                 if !is_connected {
-                    // The database may have been restarted: it gets everything again.
+                    // The database may have been restarted, so everything is sent again.
                     self.published.clear();
                 }
                 (heard, notes)

@@ -25,7 +25,7 @@ impl Mail {
         self.bytes += message.len();
         self.messages.push_back(Arc::clone(message));
         let mut displaced = 0;
-        // As MOOS clients do with unsent mail: half of it goes, so that this stays rare.
+        // Half of it is dropped, as MOOS clients do with unsent mail, so that this rarely happens.
         if self.bytes > MAIL_MAX {
             while self.bytes > MAIL_MAX / 2 {
                 let Some(old) = self.messages.pop_front() else {

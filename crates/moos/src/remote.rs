@@ -1,4 +1,4 @@
-//! A client of somebody else's MOOSDB that reconnects automatically.
+//! A client of an existing MOOSDB that reconnects automatically.
 
 use crate::clock::MoosClock;
 use crate::database::Dropped;
@@ -82,7 +82,7 @@ impl Remote {
         }
     }
 
-    /// Hears a value of the bridge's own, which the database does not send back.
+    /// Receives a value published by the bridge itself, which the database does not send back.
     pub(crate) fn hear(&self, msg: Msg) {
         self.state.visit(|state| wire::keep(&mut state.heard, msg));
     }
@@ -180,11 +180,11 @@ impl Link {
             Some(msg) if msg.kind == Kind::WELCOME => {}
             Some(msg) if msg.kind == Kind::POISON => {
                 return Err(format!(
-                    "it refuses {NAME}: {}",
+                    "it rejected {NAME}: {}",
                     msg.as_text().unwrap_or("without a reason")
                 ));
             }
-            _ => return Err("it does not answer like a MOOSDB".to_owned()),
+            _ => return Err("it does not respond like a MOOSDB".to_owned()),
         }
         let registers = self
             .reads

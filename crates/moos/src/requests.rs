@@ -1,5 +1,5 @@
 //! Answers to requests for tags and grabs. The referee alone decides; it judges positions and needs
-//! no request. A request is answered by what it decided, or by why it could not decide in favour.
+//! no request. The reply to a request states its decision, or why it could not decide in favour.
 
 use crate::community::Value;
 use messages::Picture;
@@ -77,8 +77,8 @@ impl Requests {
         }
     }
 
-    /// The answers after a picture: what the referee decided, requested or not, and to whom it
-    /// gave nothing in time.
+    /// The replies after a picture: the referee's decisions, requested or not, and requests that were not granted in
+    /// time.
     pub(crate) fn judge(
         &mut self,
         scenario: &Scenario,

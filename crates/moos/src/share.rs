@@ -40,7 +40,7 @@ impl Share {
         self.socket.local_addr()
     }
 
-    /// Sends a message. What the network does not accept at once is lost, as with any datagram.
+    /// Sends a message. If the network does not accept it at once, it is lost, like any datagram.
     pub fn send(&self, msg: &Msg) {
         let mut datagram = Vec::new();
         wire::encode(msg, &mut datagram);

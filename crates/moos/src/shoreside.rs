@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Interval at which drawings are published again, for viewers that came late.
+/// Interval at which drawings are published again, for viewers that connect late.
 const REDRAW_S: f64 = 5.0;
 /// How often the shoreside reads commands while no frame arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
@@ -61,7 +61,7 @@ pub(crate) fn reads(scenario: &Scenario) -> BTreeSet<String> {
 }
 
 impl Shoreside<'_> {
-    /// Publishes frames until the game is over or the sim has gone.
+    /// Publishes frames until the game is over or the sim is lost.
     pub(crate) fn serve(
         &mut self,
         bus: &Bus,
@@ -163,7 +163,7 @@ impl Shoreside<'_> {
                 carrier.map_or(flag.home, |boat| astern(&boat.nav)),
             );
             let key = format!("VIEW_MARKER {i}");
-            // One variable draws all flags; a change is looked for flag by flag.
+            // One variable draws all flags; each flag is checked for changes separately.
             if community.is_change(&key, &marker) {
                 sent.push(community.publish("VIEW_MARKER", Value::Text(marker)));
             }

@@ -1,4 +1,4 @@
-//! The cost of one row of a policy of typical size.
+//! The cost of one row for a policy of typical size.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use onnx::{Head, Layer, Network, Perceptron};

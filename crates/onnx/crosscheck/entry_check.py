@@ -46,7 +46,7 @@ def networks():
             want = np.asarray(want, np.float64).ravel()
             error = np.max(np.abs(np.asarray(found[output.name], np.float64).ravel() - want) / (1 + np.abs(want)))
             check(error < ERROR_MAX, f"{file.name}: {output.name} differs by {error}")
-    print(f"{len(files)} networks as ONNX Runtime evaluates them")
+    print(f"{len(files)} networks give the results of ONNX Runtime")
 
 
 def observations():

@@ -17,9 +17,9 @@ pub fn tanh(x: f32) -> f32 {
         4.893_524_6e-3,
     ];
     const EVEN: [f32; 4] = [1.198_258_4e-6, 1.185_347_1e-4, 2.268_434_6e-3, 4.893_525e-3];
-    /// From here on the result is 1 in single precision.
+    /// From this value on, the result is 1 in single precision.
     const END: f32 = 7.905_311;
-    /// Up to here the result is `x`, which is more exact than the quotient.
+    /// Up to this value, the result is `x`, which is more exact than the quotient.
     const LINEAR: f32 = 0.0004;
     let above = if x < -END { -END } else { x };
     let inside = if above > END { END } else { above };

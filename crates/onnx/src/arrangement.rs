@@ -342,7 +342,7 @@ pub(super) fn gather(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     select(planner, value, axis, &selected, &indices.shape)
 }
 
-/// Takes these elements of an axis, which becomes the dimensions `dims`.
+/// Selects these elements of an axis, which becomes the dimensions `dims`.
 fn select(
     planner: &mut Planner,
     value: Value,

@@ -9,7 +9,7 @@ const NAME_MAX: usize = 80;
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum NetworkError {
     /// The bytes are not an ONNX file, or the file is truncated or damaged.
-    #[error("not an ONNX file, or a damaged one: byte {byte}: {found}")]
+    #[error("not an ONNX file, or corrupted ({found} at byte {byte})")]
     NotOnnx {
         /// Offset of the fault.
         byte: usize,
@@ -17,7 +17,7 @@ pub enum NetworkError {
         found: String,
     },
     /// The bytes are a Git LFS pointer.
-    #[error("a Git LFS pointer, expected the ONNX file that it stands for: run `git lfs pull`")]
+    #[error("a Git LFS pointer, expected the ONNX file that it points to: run `git lfs pull`")]
     LfsPointer,
     /// A part of the file cannot be used.
     #[error("{place}: found {found}, expected {expected}")]

@@ -84,7 +84,7 @@ impl Network {
         &self.plan.metadata
     }
 
-    /// What in the file deviates from what it computes, such as a declared shape of an output.
+    /// Deviations of the file from what it computes, such as the declared shape of an output.
     pub fn warnings(&self) -> &[String] {
         &self.plan.warnings
     }

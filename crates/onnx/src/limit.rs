@@ -111,7 +111,7 @@ impl Fields<'_> {
                 wire_type => {
                     return Err(NetworkError::NotOnnx {
                         byte: begin,
-                        found: format!("a field of wire type {wire_type}"),
+                        found: format!("unexpected wire type {wire_type}"),
                     });
                 }
             }

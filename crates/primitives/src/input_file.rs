@@ -36,7 +36,7 @@ pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = vec![];
     let file = open(path)?;
     let reported = file.metadata()?.len();
-    // Nothing of a file that is known to be too long: its bytes would fill the memory.
+    // A file known to be too long is not read at all: its bytes would fill the memory.
     let most = if reported > bytes_max {
         0
     } else {

@@ -63,7 +63,7 @@ pub fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Formats a number with `places` decimals; −0.0 becomes 0, because text comparisons distinguish
+/// Formats a number to `places` decimal places; −0.0 becomes 0, because text comparisons distinguish
 /// them.
 pub fn decimal(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// Maximum length of a printed line, characters.
 const LINE_MAX: usize = 2000;
-/// Characters shown of the end of a longer line.
+/// Characters shown from the end of a longer line.
 const TAIL: usize = 400;
 
 /// A text of many lines. Escapes control characters except line breaks and tabs as in JSON, and

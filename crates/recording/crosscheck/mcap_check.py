@@ -32,8 +32,8 @@ def main(recording, result_path):
     result = json.load(open(result_path, encoding="utf-8"))
     reader = make_reader(io.BytesIO(data), decoder_factories=FACTORIES)
     metadata = metadata_of(reader)
-    check(metadata["squall"]["seed"] == str(result["seed"]), "the seed is another")
-    check(metadata["result"]["digest"] == result["digest"], "the digest is another")
+    check(metadata["squall"]["seed"] == str(result["seed"]), "the seed differs")
+    check(metadata["result"]["digest"] == result["digest"], "the digest differs")
     scenario = json.loads(metadata["squall"]["scenario"])
     names = [vehicle["name"] for vehicle in scenario["vehicles"]]
     teams = [team["name"] for team in scenario["teams"]]
@@ -43,13 +43,13 @@ def main(recording, result_path):
     for schema, channel, message, decoded in reader.iter_decoded_messages():
         counts[channel.topic] = counts.get(channel.topic, 0) + 1
         check(channel.message_encoding == "cdr", f"{channel.topic} is not CDR")
-        check(schema.encoding == "ros2msg", f"{channel.topic} has a schema that is no ROS 2 message")
+        check(schema.encoding == "ros2msg", f"{channel.topic} has a schema that is not a ROS 2 message")
         if schema.name == TEXT:
             is_object = isinstance(json.loads(decoded.data), dict)
-            check(is_object, f"{channel.topic} has something else than an object")
+            check(is_object, f"{channel.topic} has something other than an object")
             continue
         if channel.topic == "frame":
-            check(len(decoded.vehicles) == len(names), "a frame has another number of boats")
+            check(len(decoded.vehicles) == len(names), "a frame has a different number of boats")
             check(decoded.stamp.version == 3, "a frame from another version")
             last, events = decoded, events + len(decoded.events)
             log_times.append(message.log_time)
@@ -58,22 +58,22 @@ def main(recording, result_path):
     score = dict(zip(teams, last.score))
     check(score == result["score"]["teams"], f"the score is {score}, not {result['score']['teams']}")
     check(events == len(result["events"]), f"{events} events, not {len(result['events'])}")
-    check(abs(last.stamp.valid_ns * 1e-9 - result["duration_s"]) < 1e-6, "the game ends at another time")
+    check(abs(last.stamp.valid_ns * 1e-9 - result["duration_s"]) < 1e-6, "the game ends at a different time")
     check(log_times[-1] - log_times[0] == last.stamp.valid_ns, "log_time is not simulated time")
     summary = reader.get_summary()
-    check(summary.statistics.message_count == sum(counts.values()), "the summary counts other messages")
+    check(summary.statistics.message_count == sum(counts.values()), "the summary has different message counts")
 
-    # A file that was cut in the middle: what is there is there.
+    # A file truncated in the middle: the rest is readable.
     cut = NonSeekingReader(io.BytesIO(data[: len(data) // 2]), decoder_factories=FACTORIES)
     some = 0
     try:
         for _, channel, _, _ in cut.iter_decoded_messages(topics=["frame"], log_time_order=False):
             some += 1
-    except Exception as end:  # noqa: BLE001: the package says that the file ends, each version in its own words
-        print(f"cut in the middle it ends with {type(end).__name__}")
-    check(some > counts["frame"] // 4, f"of a file cut in half only {some} of {counts['frame']} frames are left")
+    except Exception as end:  # noqa: BLE001: the package reports the end of the file, each version in its own words
+        print(f"truncated in the middle, it ends with {type(end).__name__}")
+    check(some > counts["frame"] // 4, f"of a file cut in half, only {some} of {counts['frame']} frames are left")
 
-    # As a bag of ROS 2, by people who have nothing of ours and nothing of MCAP's.
+    # As a ROS 2 bag, read without our code or that of MCAP.
     bag_counts, bag_score = {}, None
     with AnyReader([Path(recording)]) as bag:
         for connection, _, raw in bag.messages():
@@ -86,7 +86,7 @@ def main(recording, result_path):
     check(bag_counts == counts, f"a bag of {bag_counts} messages, not {counts}")
     check(bag_score == score, f"in the bag the score is {bag_score}, not {score}")
     texts = sum(1 for channel in summary.channels.values() if summary.schemas[channel.schema_id].name == TEXT)
-    check(texts > 0, "there is no text in it")
+    check(texts > 0, "it contains no text")
     print(f"{recording}: {sum(counts.values())} messages on {len(counts)} topics agree; {some} frames in the first half")
 
 
@@ -99,11 +99,11 @@ def of_gateway(recording):
     for schema, channel, _, decoded in reader.iter_decoded_messages(log_time_order=False):
         counts[channel.topic] = counts.get(channel.topic, 0) + 1
         if schema.name == TEXT:
-            check(isinstance(json.loads(decoded.data), dict), f"{channel.topic} has something else than an object")
+            check(isinstance(json.loads(decoded.data), dict), f"{channel.topic} has something other than an object")
         else:
             check(channel.topic == f"link/{boat}", f"{channel.topic} is {schema.name}")
             link[decoded.outward] += bytes(decoded.data)
-    check(b"$PSEAC" in link[True] and b"GGA" in link[False], "there are no sentences on the link")
+    check(b"$PSEAC" in link[True] and b"GGA" in link[False], "no sentences on the link")
     bag_counts = {}
     with AnyReader([Path(recording)]) as bag:
         for connection, _, raw in bag.messages():

@@ -2,7 +2,7 @@
 //!
 //! `LOGSTART` aligns their clocks. The game begins when `AQUATICUS_GAME` or `AQUATICUS_GAME_ALL`
 //! becomes `play`, or with the first position. A boat's motion is from `NAV_GT_…`, else `NAV_…` of
-//! its own log, else node reports. Tags without a tag manager's result count as by the boundary.
+//! its own log, else node reports. Tags without a tag manager's result count as boundary tags.
 
 use crate::{Bag, Decision, Ending, Entry, Header, RecordingError, Writer};
 use messages::picture::{FlagView, Nav};
@@ -20,11 +20,11 @@ use std::path::{Path, PathBuf};
 pub const PACE: &str = "moos_logs";
 /// The first bytes of every log.
 const MAGIC: &[u8] = b"%%%%%%%%";
-/// Without a position for this long, a boat's navigation counts as lost, s.
+/// After this long without a position, a boat's navigation is treated as lost, s.
 const SILENCE_S: f64 = 5.0;
-/// Maximum length of a game, s: longer ones are several, or their clocks differ.
+/// Maximum length of a game, s: longer logs are of several games, or their clocks differ.
 const LENGTH_MAX_S: f64 = 86_400.0;
-/// Width of water around the tracks on a field that is not known, m.
+/// Width of the water around the tracks on an unknown field, m.
 const MARGIN_M: f64 = 10.0;
 /// Variables of the log's own boat.
 const OWN: &str = "NAV_GT_X NAV_GT_Y NAV_GT_HEADING NAV_GT_SPEED NAV_X NAV_Y NAV_HEADING NAV_SPEED \
@@ -33,10 +33,10 @@ const OWN: &str = "NAV_GT_X NAV_GT_Y NAV_GT_HEADING NAV_GT_SPEED NAV_X NAV_Y NAV
 /// Times, s, and values.
 type Series = Vec<(f64, f64)>;
 
-/// What the logs of a game say.
+/// The contents of a game's logs.
 #[derive(Default)]
 struct Game {
-    /// By boat, team or nobody, and variable; `true` and `play` are 1.
+    /// By boat, team or neither, and variable; `true` and `play` are 1.
     values: BTreeMap<String, BTreeMap<String, Series>>,
     /// The teams of boats.
     teams: BTreeMap<String, String>,
@@ -110,14 +110,14 @@ impl Game {
         Ok(())
     }
 
-    /// Takes a row. Returns the name of the log's own boat, if the row has it.
+    /// Processes a row. Returns the name of the log's own boat, if the row has it.
     fn take(&mut self, (at_s, key, value): (f64, &str, &str)) -> Result<Option<String>, String> {
         let field = |name: &str| {
             let mut parts = value.split(',');
             parts.find_map(|part| part.trim().strip_prefix(name)?.strip_prefix('='))
         };
         if key.starts_with("NODE_REPORT") {
-            let name = name_of(field("NAME").ok_or("there is no NAME")?);
+            let name = name_of(field("NAME").ok_or("NAME is missing")?);
             if let Some(team) = field("GROUP") {
                 self.teams.insert(name.clone(), name_of(team));
             }
@@ -143,7 +143,7 @@ impl Game {
             _ if key.starts_with("HAS_FLAG_") => (&key[9..], "HAS_FLAG"),
             _ => return Ok(None),
         };
-        // Other values of these variables, such as `pause`, mean nothing here.
+        // Other values of these variables, such as `pause`, have no meaning here.
         if let Ok(value) = number(value) {
             let known = self.values.entry(name_of(whose)).or_default();
             let series = known.entry(what.to_owned()).or_default();
@@ -179,7 +179,7 @@ impl Game {
         let stop_s = when(0.0).filter(|end| *end > start_s);
         let length_s = stop_s.unwrap_or(last_s) - start_s;
         if !(0.0..LENGTH_MAX_S).contains(&length_s) {
-            return Err("they span more than a day: are they from one game?".to_owned());
+            return Err("they span more than a day: are they all from one game?".to_owned());
         }
         let header = Header {
             commit: String::new(),
@@ -316,7 +316,7 @@ impl Game {
         }
     }
 
-    /// Tells what has happened to a boat since the frame before.
+    /// Reports what has happened to a boat since the previous frame.
     fn tell_changes(
         &self,
         (before, now): (&Frame, &Frame),
@@ -404,7 +404,7 @@ fn newest(series: &Series, at_s: f64) -> Option<(f64, f64)> {
     Some(series[next.checked_sub(1)?])
 }
 
-/// The value at a time, on a line between its neighbours.
+/// The value at a time, by linear interpolation.
 fn between(series: &[(f64, f64)], at_s: f64) -> f64 {
     let next = series.partition_point(|(time_s, _)| *time_s <= at_s);
     let (before, after) = series.split_at(next);
@@ -439,7 +439,7 @@ fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A boat or a team, as scenarios name it.
+/// A boat or a team, as named in scenarios.
 fn name_of(text: &str) -> String {
     let fit = |c: char| {
         if c.is_ascii_alphanumeric() {
@@ -521,7 +521,7 @@ mod tests {
             ),
             (
                 "%% LOGSTART 1\n1 NODE_REPORT p X=1\n",
-                "0.txt:3: there is no NAME",
+                "0.txt:3: NAME is missing",
             ),
             ("%% LOGSTART 1\n", "0.txt: no boat has NAV_X or NODE_REPORT"),
         ] {
@@ -530,7 +530,7 @@ mod tests {
         }
         let far = SHORE.replace("1001.0", "900000.0");
         let error = read_text(&[BLUE, &far]).expect_err("two games").to_string();
-        assert!(error.ends_with("are they from one game?"), "{error}");
+        assert!(error.ends_with("are they all from one game?"), "{error}");
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub enum RecordingError {
         /// The kind found.
         found: Kind,
     },
-    /// It was made by another version, whose messages may differ in meaning.
+    /// It was recorded by another version, whose messages may differ in meaning.
     #[error("recorded by Squall {found}, this is {ours}", ours = primitives::VERSION)]
     Version {
         /// The recorder's version.

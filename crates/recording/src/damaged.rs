@@ -41,7 +41,7 @@ impl Damaged {
             "messages are"
         };
         Some(format!(
-            "{} {messages} damaged and left out; {first}",
+            "{} {messages} damaged and skipped; {first}",
             self.count
         ))
     }

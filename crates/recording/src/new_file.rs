@@ -53,8 +53,8 @@ impl NewFile {
     /// # Errors
     /// As [`NewFile::create`].
     pub fn create_numbered(folder: &Path, stem: &str) -> Result<NewFile, RecordError> {
-        // Creating the file reserves its name. If the name was only looked for, another program
-        // could create it in the meantime.
+        // Creating the file reserves its name. If the name were only checked, another program could create it in the
+        // meantime.
         let mut created = NewFile::create(&folder.join(format!("{stem}.mcap")));
         for number in 2..=NAMES_MAX {
             match created {
@@ -66,8 +66,7 @@ impl NewFile {
         created
     }
 
-    /// The file for a child process: takes over an empty one that its parent has lent, or creates
-    /// it.
+    /// The file for a child process: uses an empty file lent by its parent, or creates it.
     ///
     /// # Errors
     /// [`RecordError`] if it cannot be opened or created, or already contains something.
@@ -102,7 +101,7 @@ impl Drop for NewFile {
     fn drop(&mut self) {
         // If this fails, an unfinished file remains.
         match &self.file {
-            // Only the lender removes it: by now the name may be another program's.
+            // Only the lender removes it: by now the name may belong to another program.
             Some(file) if self.is_lent => drop(file.set_len(0)),
             Some(_) => drop(std::fs::remove_file(&self.path)),
             None => {}

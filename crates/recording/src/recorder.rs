@@ -12,10 +12,9 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Period of flushes to the system. Each flush closes a chunk, whose index entry stays in memory
-/// until the file ends, about 500 bytes. At four per second that was 5 MB an hour.
+/// until the file ends, about 500 bytes. At four per second, that came to 5 MB an hour.
 const FLUSH: Duration = Duration::from_secs(1);
-/// Time for which entries accumulate: waking for each one would cost the game more than the
-/// writing.
+/// Time for which entries accumulate: waking for each one would cost the game more than writing does.
 const GATHER: Duration = Duration::from_millis(20);
 /// Size of the write buffer, bytes.
 const BUFFER: usize = 1 << 16;
@@ -216,7 +215,7 @@ fn write<W: Write + Seek>(
     update_size();
 }
 
-/// Lets entries accumulate. The recording threads need not wake this one.
+/// Lets entries accumulate, so that the recording threads need not wake this one.
 #[expect(
     clippy::disallowed_methods,
     reason = "entries are written in batches, by the clock"

@@ -1,4 +1,4 @@
-//! Recordings: a round trip, also through a truncated file, and refusal of other files.
+//! Recordings: round trips, even of a truncated file, and rejection of other files.
 
 use messages::helm::HelmQuestion;
 use messages::input::{Input, Inputs};
@@ -281,9 +281,9 @@ fn any_message_of_many_is_found_in_any_order() {
     );
     assert!(
         all_of(&recording) == want,
-        "one after the other they are not those that the library reads"
+        "read one after the other, they differ from those that the library reads"
     );
-    // 1013 is coprime to their number, so each comes once.
+    // 1013 is coprime to their number, so each occurs once.
     for i in 0..want.len() {
         let place = i * 1013 % want.len();
         let message = recording.bag().message(place);
@@ -301,7 +301,7 @@ fn any_message_of_many_is_found_in_any_order() {
 fn a_file_cut_at_any_byte_opens_up_to_the_cut() {
     let whole = recorded(&[1.0, 2.0, 3.0, 4.0]);
     let all = all_of(&Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}")));
-    // Every message ends with its bytes, except that a text is followed by a NUL.
+    // A message ends exactly where its bytes do, except that a text is followed by a NUL.
     let mut from = 0;
     let mut ends = Vec::new();
     for (topic, number, bytes) in &all {
@@ -314,12 +314,12 @@ fn a_file_cut_at_any_byte_opens_up_to_the_cut() {
     }
     let first = (0..whole.len())
         .find(|cut| Recording::of(whole[..*cut].to_vec()).is_ok())
-        .expect("it opens at last");
-    assert!(first < ends[0], "the beginning alone opens");
+        .expect("it opens in the end");
+    assert!(first < ends[0], "the beginning opens on its own");
     for cut in 0..whole.len() {
         match Recording::of(whole[..cut].to_vec()) {
             Err(RecordingError::Foreign(_)) => assert!(cut < first, "cut at {cut}"),
-            Err(e) => panic!("cut at {cut}: {e}"),
+            Err(e) => panic!("truncated at {cut}: {e}"),
             Ok(recording) => {
                 let count = ends.iter().filter(|end| **end <= cut).count();
                 assert_eq!(all_of(&recording), all[..count], "cut at {cut}");
@@ -366,17 +366,14 @@ fn other_files_are_refused_with_the_reason() {
 #[test]
 #[expect(
     clippy::disallowed_methods,
-    reason = "a file is looked at again, with a limit"
+    reason = "a file is checked repeatedly, with a limit"
 )]
 fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     let dir = tempfile::tempdir().expect("a directory");
     let path = dir.path().join("game.mcap");
     let blank = || NewFile::create(&path);
     drop(blank().unwrap_or_else(|e| panic!("{e}")));
-    assert!(
-        !path.exists(),
-        "of a game that never began there is no recording"
-    );
+    assert!(!path.exists(), "a game that never began has no recording");
     let recorder = Recorder::begin(
         blank().unwrap_or_else(|e| panic!("{e}")),
         &header().opening(),
@@ -395,7 +392,7 @@ fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     }
     assert_eq!(
         frames, 50,
-        "what was recorded is on the disk though nobody ended it"
+        "what was recorded is on the disk although the recording was not ended"
     );
     assert!(blank().is_err(), "nothing is overwritten");
     let state = recorder.end(ending().facts());
@@ -423,7 +420,7 @@ fn records_that_say_they_are_longer_than_they_are_do_no_harm() {
     assert_eq!(
         attachment.frame_count(),
         1,
-        "an attachment is of no interest, however damaged"
+        "an attachment does not matter, however damaged"
     );
     let huge = [&[1, 0][..], &u32::MAX.to_le_bytes()].concat();
     for (opcode, content) in [
@@ -471,7 +468,7 @@ fn a_byte_that_is_another_is_noticed_and_its_chunk_named() {
         let is_noticed = recording.is_cut() || !recording.bag().damage.is_empty();
         assert!(
             is_noticed || all_of(&recording) == all,
-            "byte {place} is another, and nobody says so"
+            "byte {place} was changed without an error"
         );
     }
     let mut bytes = whole;

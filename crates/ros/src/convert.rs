@@ -38,7 +38,7 @@ impl Motion {
     /// As measured by the boat itself.
     pub fn measured(stamp: Stamp, boat: &OwnBoat) -> Motion {
         let (at, nav) = (stamp.valid_ns, boat.nav);
-        // A boat does not measure its attitude: level is the estimate that belongs to this picture.
+        // A boat does not measure its attitude: level is the best estimate.
         Motion {
             at,
             fix: boat.fix_ns,

@@ -66,7 +66,7 @@ fn standing(at: Ned) -> Pose {
     }
 }
 
-/// What does not move: edges, scrimmage line and obstacles.
+/// Fixed parts: edges, scrimmage line and obstacles.
 pub fn field(scenario: &Scenario, at: SimTime) -> MarkerArray {
     let field = &scenario.field;
     let closed = |corners: &[Ned]| {
@@ -102,7 +102,7 @@ pub fn field(scenario: &Scenario, at: SimTime) -> MarkerArray {
     MarkerArray { markers }
 }
 
-/// What moves: boats as arrows of their length, and flags as spheres, at home or on their carrier.
+/// Moving parts: boats as arrows of their length, and flags as spheres, at home or on their carrier.
 pub fn game(scenario: &Scenario, frame: &Frame) -> MarkerArray {
     let at = frame.stamp.valid_ns;
     let boats = frame

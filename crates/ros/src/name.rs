@@ -1,7 +1,7 @@
 //! The names that `rmw_zenoh` gives to topics, services, nodes and messages: keys, liveliness
 //! tokens and attachments, as in its design document.
 //!
-//! The crate `hiroz-protocol` has these too. They are four formats and 33 bytes; the crate is
+//! The crate `hiroz-protocol` has these too. They amount to four formats and 33 bytes; the crate is
 //! experimental, twelve times as long, and would tie the bridge's zenoh to its own.
 
 use crate::type_hash::type_hash;
@@ -11,7 +11,7 @@ use xxhash_rust::xxh3::xxh3_128;
 /// are defaults.
 const QOS: &str = "::,10:,:,:,,";
 
-/// What an endpoint does.
+/// The kind of an endpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Publishes a topic.

@@ -1,4 +1,4 @@
-//! What ROS 2 asks of a boat, and the orders that follow from it while it is valid.
+//! ROS 2's requests for a boat, and the orders that follow from them while they are valid.
 
 use crate::message::Twist;
 use messages::order::Order;
@@ -8,10 +8,10 @@ use messages::{VehicleOrder, order};
 use primitives::{SimTime, VehicleId, angle::wrap_pi};
 use std::f64::consts::FRAC_PI_3;
 
-/// How far the ordered heading may lead the boat's own, rad. A boat that cannot turn as fast as
-/// asked would otherwise go on turning after the request has ended.
+/// How far the ordered heading may lead the boat's own, rad. A boat that cannot turn as fast as requested would
+/// otherwise continue turning after the request has ended.
 const LEAD_MAX_RAD: f64 = FRAC_PI_3;
-/// Maximum yaw rate that a twist may ask for, rad/s.
+/// Maximum yaw rate that a twist may request, rad/s.
 const YAW_RATE_MAX_RAD_S: f64 = 10.0;
 
 /// A request for a boat.
@@ -29,8 +29,7 @@ pub enum SetPoint {
 }
 
 impl SetPoint {
-    /// The request in a `geometry_msgs/Twist`: `linear.x` and `angular.z`. Boats cannot follow the
-    /// other parts.
+    /// The request in a `geometry_msgs/Twist`: `linear.x` and `angular.z`. Boats cannot follow the other components.
     ///
     /// # Errors
     /// [`Refusal::BadNumber`] if a number is out of range. Boats have no controlled speed astern.
@@ -136,7 +135,7 @@ impl Follower {
         Order::Hold
     }
 
-    /// The ordered heading moves at the yaw rate asked for, and the boat follows it: the same rate
+    /// The ordered heading moves at the requested yaw rate, and the boat follows it: the same rate
     /// for every hull and controller.
     fn heading(&mut self, now: SimTime, psi_rad: f64, yaw_rate_rad_s: f64) -> f64 {
         let (before_rad, then) = self.heading.unwrap_or((psi_rad, now));

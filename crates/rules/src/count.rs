@@ -17,7 +17,7 @@ pub struct Counts {
     pub tagged: u32,
     /// Times the boat left the field.
     pub out_of_bounds: u32,
-    /// Collisions that involved the boat. A collision between team-mates counts twice for their
+    /// Collisions that involved the boat. A collision between teammates counts twice for their
     /// team.
     pub collisions: u32,
     /// Times the boat's agent was lost. Older recordings use its former name.

@@ -7,12 +7,12 @@ use primitives::id::VehicleId;
 /// The constraint of the rules on one boat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Directive {
-    /// It follows its mind, up to this share of its top speed.
+    /// It follows its mind, up to this fraction of its top speed.
     Free {
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// It is tagged and driven straight home at this share of its top speed; its mind is ignored.
+    /// It is tagged and driven straight home at this fraction of its top speed; its mind is ignored.
     DrivenHome {
         /// The untag place.
         to: Ned,

@@ -72,7 +72,7 @@ pub enum Walls {
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Its position while nobody carries it.
+    /// Its position while no boat carries it.
     pub home: Ned,
 }
 
@@ -88,7 +88,7 @@ pub enum Obstacle {
     },
     /// A polygon without self-crossings.
     Polygon {
-        /// At least three corners, in order, either way round.
+        /// At least three corners, in order, in either direction.
         corners: Vec<Ned>,
     },
 }
@@ -253,7 +253,7 @@ const COLUMNS: [(&str, f64); 5] = [
     ("S", 0.75),
     ("SS", 1.0),
 ];
-/// The rows of the named points, from the own end: back, flag, half, mid, centre, and their mirror
+/// The rows of the named points, from one's own end: back, flag, half, mid, centre, and their mirror
 /// images.
 const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
 
@@ -551,7 +551,7 @@ mod tests {
     }
 
     #[test]
-    fn named_points_are_seen_from_the_own_end() {
+    fn named_points_are_seen_from_a_teams_own_end() {
         let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
         for (team, name, x, y) in [
             (0, "CF", 20.0, 40.0),

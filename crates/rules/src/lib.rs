@@ -112,10 +112,10 @@ pub struct Rules {
     /// Who drives a tagged boat.
     #[schemars(extend("default" = "drives_itself"))]
     pub tagged_boat: TaggedBoat,
-    /// Maximum speed of a tagged boat, as a share of its top speed.
+    /// Maximum speed of a tagged boat, as a fraction of its top speed.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub tagged_speed_factor: f64,
-    /// Maximum speed outside the field, as a share of top speed.
+    /// Maximum speed outside the field, as a fraction of top speed.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub outside_speed_factor: f64,
     /// What a team learns about other boats. Default: everything, at once.
@@ -235,7 +235,7 @@ pub enum Resolution {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SideJudged {
-    /// The present one.
+    /// The current one.
     #[default]
     AfterMove,
     /// The one before its last move, a physics tick ago, as in Pyquaticus.

@@ -63,7 +63,7 @@ impl Referee {
     ///
     /// The order of the list below is the order of resolution. Every phase is judged by the
     /// standing at its start, whatever the order of the boats: mirrored teams get mirrored results.
-    /// Results of this look count from the next one on: a flag brought home cannot be grabbed yet,
+    /// Results of this look take effect from the next one on: a flag brought home cannot be grabbed yet,
     /// a grabbed flag cannot be captured yet, a tagged boat cannot be untagged yet.
     /// [`Resolution::InTurn`] uses another order, for comparison with Pyquaticus.
     ///

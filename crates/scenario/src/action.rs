@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// What a policy chooses from.
+/// The actions that a policy can choose from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
@@ -82,7 +82,7 @@ pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     parts.iter().map(|part| (part / sum) as f32).collect()
 }
 
-/// What an action asks of a boat.
+/// The request that an action makes to a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SetPoint {
     /// Desired turn, rad clockwise, -pi to pi: half a turn to either side is two different requests.
@@ -95,7 +95,7 @@ pub struct SetPoint {
 
 /// Number of turns at each speed, from half a turn to starboard to nearly half a turn to port.
 const TURNS: usize = 8;
-/// Speeds of the discrete actions, as shares of the top speed.
+/// Speeds of the discrete actions, as fractions of the top speed.
 const SPEEDS: [f64; 2] = [1.0, 0.5];
 
 impl ActionSpace {

@@ -35,14 +35,14 @@ pub struct Boat {
     pub sensors: Sensors,
 }
 
-/// What a boat does without an order, out of action, or on a hold order.
+/// The behaviour of a boat without an order, out of action, or on a hold order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Hold {
     /// Stops its thrusters and drifts.
     #[default]
     Drifts,
-    /// Keeps station where the hold began. It drifts if operators stop the boats.
+    /// Keeps station where the hold began. If operators stop the boats, it drifts.
     KeepsStation,
 }
 
@@ -113,7 +113,7 @@ pub struct Kinematic {
     /// Rate of turn at full rudder and half thrust, degrees/s.
     #[schemars(range(min = 0, max = 1000))]
     pub turn_rate: f64,
-    /// Share of speed lost at full rudder.
+    /// Fraction of speed lost at full rudder.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.85))]
     pub turn_loss: f64,
     /// Turn bias, rad/s.
@@ -218,7 +218,7 @@ pub struct Hull<E = f64> {
     /// Length for cross-flow, m. Default: L.
     #[schemars(range(min = 0, max = 200))]
     pub crossflow_length_m: E,
-    /// Share of the Munk moment (A22 - A11) u v; 1: bare hull in ideal flow.
+    /// Fraction of the Munk moment (A22 - A11) u v; 1: bare hull in ideal flow.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
     pub munk_factor: f64,
 }
@@ -232,9 +232,9 @@ pub struct Thruster {
     pub curve: ThrustCurve,
     /// Time constant of the response to a setting, s; 0 is immediate.
     pub lag_s: f64,
-    /// Maximum rate of change of the commanded setting, shares of full ahead per second.
+    /// Maximum rate of change of the commanded setting, fractions of full ahead per second.
     pub slew_per_s: f64,
-    /// Commands below this share of full ahead have no effect.
+    /// Commands below this fraction of full ahead have no effect.
     pub deadband: f64,
     /// Deviations from the ideal thruster.
     pub flaws: Flaws,
@@ -243,7 +243,7 @@ pub struct Thruster {
 /// Deviations from ideal thrusters. The default is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Flaws {
-    /// Maximum setting, as a share of full ahead or astern.
+    /// Maximum setting, as a fraction of full ahead or astern.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub saturation: f64,
     /// Factors on port and starboard thrust.
@@ -258,7 +258,7 @@ pub struct Flaws {
     /// Delay of commands to the thrusters, s.
     #[schemars(range(min = 0, max = 5), extend("default" = 0))]
     pub latency_s: f64,
-    /// The thrusters stop without a new order for this long, s. Default: never.
+    /// The thrusters stop after this long without a new order, s. Default: never.
     #[schemars(range(min = 0.1, max = 3600))]
     pub watchdog_s: Option<f64>,
     /// A battery whose voltage falls. Default: a constant one.
@@ -301,7 +301,7 @@ pub struct Battery {
     #[schemars(description = "Energy when full, W h.")]
     #[schemars(rename = "capacity_wh", range(min = 1, max = 1000000), extend("x-field" = "capacity_joule"))]
     pub capacity_joule: f64,
-    /// Initial share of charge.
+    /// Initial fraction of charge.
     #[schemars(range(min = 0, max = 1), extend("default" = 1))]
     pub charge: f64,
     /// Power of both thrusters at full ahead, W.
@@ -311,7 +311,7 @@ pub struct Battery {
     #[schemars(rename = "hotel_power_w", range(min = 0, max = 100000))]
     #[schemars(extend("x-field" = "hotel_power_watt", "default" = 0))]
     pub hotel_power_watt: f64,
-    /// Share of thrust lost when empty.
+    /// Fraction of thrust lost when empty.
     #[schemars(range(min = 0, max = 0.9), extend("default" = 0.15))]
     pub sag: f64,
 }
@@ -329,7 +329,7 @@ pub struct Ventilation {
 pub enum ThrustCurve {
     /// A propeller: the setting is the shaft speed n, rad/s, and the lag acts on n.
     Propeller(Propeller),
-    /// A measured table; the setting is the share of full ahead, −1 to 1, and the lag acts on it.
+    /// A measured table; the setting is the fraction of full ahead, −1 to 1, and the lag acts on it.
     Table {
         /// (setting, thrust in N), both rising strictly, with (0, 0) among them.
         points: Vec<(f64, f64)>,

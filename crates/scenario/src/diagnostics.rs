@@ -80,7 +80,7 @@ pub(super) fn keys_of(path: &str) -> impl Iterator<Item = &str> {
 /// The pattern of names, in a schema.
 pub(super) const NAME_PATTERN: &str = "^[a-z0-9_]{1,40}$";
 /// The same pattern in words.
-pub(super) const NAME_EXPECTED: &str = "1 to 40 of a-z, 0-9 and _";
+pub(super) const NAME_EXPECTED: &str = "1 to 40 characters from a-z, 0-9 and _";
 
 /// Whether this is a valid name of a vehicle, team or rival.
 pub(super) fn is_name(name: &str) -> bool {

@@ -57,7 +57,7 @@ pub(super) struct Owner<'a> {
     pub(super) path_from: usize,
 }
 
-/// The kind of distribution that a table is meant to be, if any.
+/// The kind of distribution that a table is intended to be, if any.
 pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
     ["uniform", "normal", "log_normal", "choice"]
         .into_iter()
@@ -80,7 +80,7 @@ pub(super) fn draw(
     ) else {
         let key = path.rsplit('.').next().unwrap_or(path);
         let message = format!(
-            "{key} is not a distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
+            "{key} is not a valid distribution, expected one of {{ uniform = [low, high] }} with low < high, {{ normal = [mean, sigma] }}, \
              {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}, \
              optionally with times = FACTOR"
         );

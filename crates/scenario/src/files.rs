@@ -70,6 +70,9 @@ impl Files {
             // A file on disk always wins, and names work in any folder. Unpacking the built-in
             // files into a user's folder would have left outdated copies behind.
             (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
+            (Err(error), _) if error.kind() == ErrorKind::NotFound => {
+                return Err("no such file".to_owned());
+            }
             (Err(error), _) => return Err(error.to_string()),
         };
         read.add(path.to_owned(), Arc::clone(&bytes));

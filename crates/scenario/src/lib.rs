@@ -94,7 +94,7 @@ pub struct Scenario {
     pub tick: SimTime,
     /// Physics ticks per decision of a mind.
     pub ticks_per_decision: u32,
-    /// Lockstep: wall-clock time that the sim waits for a mind before it counts as lost, s.
+    /// Lockstep: wall-clock time that the sim waits for a mind before treating it as lost, s.
     pub patience_s: f64,
     /// Real time: maximum age of an order, in simulated time, before the boat holds, s.
     pub order_ttl_s: f64,
@@ -131,7 +131,7 @@ impl Scenario {
         index.map(VehicleId::at)
     }
 
-    /// The vehicle with this name from a user.
+    /// The vehicle with this name, given by a user.
     ///
     /// # Errors
     /// [`UnknownVehicle`] with the existing names.
@@ -226,7 +226,7 @@ impl Scenario {
 
 /// A name that no vehicle of the game has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("there is no vehicle {name:?}; there are {}", .known.join(", "))]
+#[error("no vehicle named {name:?}; the vehicles are: {}", .known.join(", "))]
 pub struct UnknownVehicle {
     /// The name.
     pub name: String,

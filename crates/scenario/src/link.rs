@@ -33,10 +33,10 @@ pub struct Link {
 /// Burst losses (Gilbert-Elliott): the link alternates between a good and a bad state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Loss {
-    /// Share lost in the good state.
+    /// Fraction lost in the good state.
     #[schemars(range(min = 0, max = 1), extend("default" = 0))]
     pub good: f64,
-    /// Share lost in the bad state.
+    /// Fraction lost in the bad state.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
     pub bad: f64,
     /// Mean duration of the good state, s; 0: always good.

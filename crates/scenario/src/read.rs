@@ -225,16 +225,12 @@ pub(super) fn tree(
             && (paths.contains(&path) || paths.len() == LONGEST_CHAIN)
         {
             let through: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
-            let through = through.join(", ");
             let why = if paths.contains(&path) {
-                "refers back to itself"
+                "circular base"
             } else {
-                "has too many levels"
+                "too many levels of base"
             };
-            let message = format!(
-                "base {why} ({through}, {}), expected a file without this base",
-                path.display()
-            );
+            let message = format!("{why}: {} -> {}", through.join(" -> "), path.display());
             loader.diagnostics.note(at, message);
             return None;
         }
@@ -280,11 +276,12 @@ fn text_of(loader: &Loader, path: &Path, asked_at: Option<usize>) -> Option<Arc<
     let diagnostics = &loader.diagnostics;
     let bytes = match loader.files.read(path, LARGEST_BYTES) {
         Ok(bytes) => input_file::utf_8(bytes.to_vec()).unwrap_or_else(|_| bytes.to_vec()),
-        Err(error) => {
-            let why = format!("cannot be read ({error}), expected a file");
+        Err(why) => {
             match asked_at {
-                Some(at) => diagnostics.note(at, format!("{} {why}", path.display())),
-                None => diagnostics.note_file(path.to_owned(), why),
+                Some(at) => diagnostics.note(at, format!("cannot read {}: {why}", path.display())),
+                None => {
+                    diagnostics.note_file(path.to_owned(), format!("cannot read this file: {why}"));
+                }
             }
             return None;
         }

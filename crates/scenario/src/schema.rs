@@ -157,7 +157,7 @@ pub(super) fn generated<T: JsonSchema>(kind: Kind) -> Value {
     tidy(&mut schema, &definitions);
     schema["title"] = format!("Squall {kind}").into();
     let base = format!(
-        "Another {kind} file that this one is laid over: its path relative to this file, or its name."
+        "Another {kind} file on which this one builds: its path relative to this file, or its name."
     );
     schema["properties"]["base"] = json!({ "type": "string", "description": base });
     schema

@@ -1,7 +1,7 @@
 //! Waves, wind and current, checked and in SI.
 //!
 //! `sim::sea` defines their effect on boats. Waves and wind are given by the direction they come
-//! from, the current by the direction it flows to.
+//! from, the current by the direction it flows towards.
 
 use primitives::frame::Ned;
 use schemars::JsonSchema;
@@ -31,7 +31,7 @@ pub struct Sea {
 }
 
 impl Sea {
-    /// Whether nothing here moves boats. Otherwise one end of a field is better than the other.
+    /// Whether nothing here moves boats. Otherwise one end of a field has an advantage.
     pub fn is_at_rest(&self) -> bool {
         let Current {
             mean_m_s,
@@ -171,7 +171,7 @@ pub struct Tide {
     pub flood_m_s: Ned,
     /// Period, s; that of the moon's principal tide is 12.42 h.
     pub period_s: f64,
-    /// Phase at the start of the game, as a share of the period: 0 and 1 are slack water before the
+    /// Phase at the start of the game, as a fraction of the period: 0 and 1 are slack water before the
     /// flood.
     pub phase: f64,
 }

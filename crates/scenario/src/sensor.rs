@@ -19,7 +19,7 @@ pub struct Sensors {
     pub imu: Option<Imu>,
 }
 
-/// A satellite receiver: position and velocity over the ground.
+/// A GPS receiver: position and velocity over the ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Gps {
     /// Standard deviation of the slowly varying error, per axis, m.

@@ -53,10 +53,9 @@ struct Validator<'a> {
 impl<'a> Validator<'a> {
     /// The value of `node`, if it satisfies the schema.
     fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
-        // The crate `jsonschema` is not suitable: it checks JSON values, which have no places and
-        // cannot be NaN. If a table fits none of several kinds, it reports only that. It also
-        // depends on regular expressions, host names and big fractions. This file covers the part
-        // of JSON Schema that Squall's types use.
+        // The crate `jsonschema` is not suitable: it checks JSON values, which have no positions and cannot be NaN. If
+        // a table fits none of several kinds, it reports only that. It also depends on regular expressions, host names
+        // and big fractions. This file covers the part of JSON Schema that Squall's types use.
         if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
             return match branches.iter().find(|branch| self.fits(node, branch)) {
                 Some(branch) => self.value(node, branch),
@@ -156,9 +155,10 @@ impl<'a> Validator<'a> {
             let is_table = |item: &&Node| matches!(item.value, Value::Table(_));
             let surplus = items.get(*counts(schema).end()).filter(is_table);
             let message = format!(
-                "{} has {} entries, expected {}",
+                "{} has {} item{}, expected {}",
                 self.key(),
                 items.len(),
+                if items.len() == 1 { "" } else { "s" },
                 allowed(schema)
             );
             self.loader

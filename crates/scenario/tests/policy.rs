@@ -1,4 +1,4 @@
-//! Models of policies: their metadata counts, and must not contradict other specifications.
+//! Models of policies: their metadata applies and must not contradict other specifications.
 
 use onnx::{Head, Layer, Perceptron};
 use scenario::action::ActionSpace;
@@ -135,8 +135,8 @@ fn of_several_outputs_the_one_that_fits_makes_the_action() {
     }
 }
 
-/// A policy trained by Stable-Baselines3 on the observations of Pyquaticus and exported by PyTorch:
-/// entirely third-party.
+/// A policy trained by Stable-Baselines3 on the observations of Pyquaticus and exported by PyTorch: an entirely
+/// third-party file.
 #[test]
 fn a_model_of_another_trainer_loads() {
     let said = PartialSpec {
@@ -144,7 +144,7 @@ fn a_model_of_another_trainer_loads() {
         action: Some(ActionSpace::Pyquaticus),
         period_s: Some(0.1),
     };
-    // The whole policy has a value and a probability beside the action.
+    // The whole policy outputs a value and a probability besides the action.
     for name in ["sb3_dynamo.onnx", "sb3_full.onnx"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/tests/network");
         let bytes = std::fs::read(folder.join(name)).expect("the model");

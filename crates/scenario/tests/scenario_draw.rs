@@ -1,4 +1,4 @@
-//! Randomised numbers: distributions in place of numbers.
+//! Randomised values: distributions in place of numbers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use scenario::Scenario;
@@ -53,7 +53,7 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
         "link = { delay_s = { uniform = [0.1, 0.2] } }",
     ))
     .unwrap();
-    // The files are no longer needed.
+    // The files have served their purpose.
     std::fs::remove_dir_all(dir.path()).unwrap();
     let recorded: Scenario = serde_json::from_str(&serde_json::to_string(&first).unwrap()).unwrap();
 
@@ -63,7 +63,7 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
         assert_eq!(
             game,
             recorded.of_seed(seed).unwrap(),
-            "seed {seed}: the same where the texts are read again"
+            "seed {seed}: the same when the texts are read again"
         );
         assert_eq!(game.drawn.len(), 2 * 3 + 1 + 1, "{:?}", game.drawn);
         let mass_kg = value(&game, "blue_one/hull.mass_kg");
@@ -173,7 +173,7 @@ fn the_numbers_have_the_distribution_that_was_asked_for() {
 #[test]
 fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place() {
     let dir = tempfile::tempdir().unwrap();
-    let none = "boats/drawn.toml:2:12: length_m is not a distribution";
+    let none = "boats/drawn.toml:2:12: length_m is not a valid distribution";
     for (boat, sea, want) in [
         (
             "length_m = { uniform = [0.05, 2] }\n",
@@ -193,7 +193,7 @@ fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place(
         (
             "length_m = { uniform = [2, 1] }\n",
             "",
-            "boats/drawn.toml:2:12: length_m is not a distribution, expected one of { uniform",
+            "boats/drawn.toml:2:12: length_m is not a valid distribution, expected one of { uniform",
         ),
         ("length_m = { normal = [2] }\n", "", none),
         ("length_m = { choice = [] }\n", "", none),

@@ -112,7 +112,7 @@ fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
         ..instead(&[("red", strategy)])
     };
     let scenario = load_with(&game, &overrides).unwrap();
-    // The files are no longer needed.
+    // The files have served their purpose.
     drop(dir);
     let other = scenario.of_seed(7).unwrap();
     assert_ne!(other.drawn, scenario.drawn);
@@ -162,14 +162,14 @@ fn an_unknown_team_and_a_file_that_is_not_there_are_explained() {
         ),
         (
             instead(&[("red", "none.toml".into())]),
-            "none.toml:1:1: cannot be read",
+            "none.toml:1:1: cannot read this file: no such file",
         ),
         (
             Overrides {
                 sea: Some("none.toml".into()),
                 ..Overrides::default()
             },
-            "none.toml:1:1: cannot be read",
+            "none.toml:1:1: cannot read this file: no such file",
         ),
         (
             instead(&[("red", shipped("seas/gale.toml"))]),
@@ -195,7 +195,7 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
     assert_eq!(followed(&load(&game).unwrap()), [four, three].concat());
     let there = exchanged(&game, Overrides::default()).unwrap();
     assert_eq!(followed(&there), [three, four].concat());
-    // They are exchanged in games of other seeds too, including those that override a team's own.
+    // They are exchanged in games with other seeds too, including those that override one team's strategy.
     assert_eq!(followed(&there.of_seed(9).unwrap()), followed(&there));
     let idle = instead(&[("blue", shipped("strategies/idle.toml"))]);
     let idle = exchanged(&game, idle).unwrap();
@@ -231,7 +231,7 @@ fn a_single_value_takes_the_place_of_what_a_file_of_its_kind_says() {
     assert_eq!(other.link.as_ref().unwrap().delay_s, 0.5);
     let mut receivers = other.boats.iter().map(|boat| boat.sensors.gps.as_ref());
     assert!(receivers.all(|gps| gps.unwrap().noise_m == 0.25));
-    // Other values stay, and a game drawn again keeps the setting.
+    // Other values are unchanged, and a game drawn again keeps the setting.
     assert_eq!(other.sea.wind, own.sea.wind);
     assert_eq!(other.of_seed(9).unwrap().rules.tag_radius_m, 12.5);
     // The last of several settings counts, and a game without a sea file has a default one at rest.
@@ -267,7 +267,7 @@ fn a_single_value_is_checked_as_if_it_stood_in_the_file() {
             "boat.gps.noise_m=often",
             "--set boat.gps.noise_m:1:15: noise_m is the string \"often\"",
         ),
-        ("game.field=nonesuch.toml", "nonesuch.toml cannot be read"),
+        ("game.field=nonesuch.toml", "nonesuch.toml: no such file"),
         (
             "rules.time_limit_s=9",
             "duration_s of the game overrides rules.time_limit_s",

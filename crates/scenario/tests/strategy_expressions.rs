@@ -1,7 +1,6 @@
-//! Expressions of strategy files: they have CEL's meaning, print as typed, and survive
-//! serialisation.
+//! Expressions in strategy files have the meaning they have in CEL, print as typed, and survive serialisation.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 use proptest::prelude::*;
 use scenario::Problems;
@@ -190,7 +189,7 @@ proptest! {
     }
 }
 
-/// Any result is acceptable, but problems must be within the file.
+/// Any result is acceptable, but problems must lie within the file.
 fn answers(given: &str) {
     let text = format!(
         "{HEAD}[[rule]]\nwhen = {given}\nset = {{ laps = 1 }}\n[behaviour.w]\nkind = \"timer\"\nduration_s = {given}\n"

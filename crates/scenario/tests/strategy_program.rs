@@ -1,6 +1,6 @@
 //! Strategy files as programs: programs match their files, and reachable modes are accepted.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 use primitives::Ned;
 use scenario::strategy::{
@@ -151,7 +151,7 @@ fn a_program_says_what_its_file_says() {
         })
     ));
 
-    // Values of the base stay unless the file overrides them.
+    // Values of the base apply unless the file overrides them.
     let keep_clear = behaviour(&program, "keep_clear");
     let Task::AvoidCollision(avoid) = &keep_clear.task else {
         panic!("{keep_clear:?}")
@@ -257,7 +257,7 @@ fn what_can_be_is_allowed() {
 
 #[test]
 fn what_is_too_hard_to_decide_is_allowed_before_long() {
-    // Ten pigeons do not fit into nine holes, but only an exhaustive search would show it.
+    // Ten pigeons do not fit into nine holes, but only an exhaustive search would show this.
     let pigeons = ["CB", "CF", "CH", "CM", "CC", "PB", "PF", "PH", "PM", "PC"];
     let holes = pigeons.len() - 1;
     let sits = |pigeon: usize, hole: usize| format!("distance({}) * {hole} > 1", pigeons[pigeon]);

@@ -30,7 +30,7 @@ const land = (sight) => sight.get(() => {
   return [bits >> 16, (bits >> 8) & 255, bits & 255, 255];
 });
 
-test('a shoreline lies where its latitudes and longitudes are, light and dark, in a game and in its replay', async (t) => {
+test('a shoreline lies at its latitudes and longitudes, in light and dark, in a game and in its replay', async (t) => {
   const { geojson, beside, within } = site(folder(t));
   const recorded = folder(t);
   await squall(t, 'run', GAME, '--in-process', '--record', recorded);
@@ -62,7 +62,7 @@ test('an image lies where its world file says', async (t) => {
   assert(other[1] > 200 && other[0] < 60, `green to the east: ${other}`);
 });
 
-test('a chart of another site is not drawn, and its place is told', async (t) => {
+test('a chart of another site is not drawn, and its place is given', async (t) => {
   const { geojson } = site(folder(t), [51.5, -0.1]);
   const sight = await Sight.open(t, browser, await live(t, geojson));
   await sight.until('the notice gives its position', () => /is not drawn: it is at 51\.\d+° N .*\skm from the field at 41/.test(document.getElementById('notices').textContent));
@@ -76,7 +76,7 @@ test('a file that is not a chart is refused before the page opens', async (t) =>
   copyFileSync(image, lone);
   const bad = join(place, 'bad.geojson');
   writeFileSync(bad, '{"type":"LineString","coordinates":[[0,0],[712345,4512345]]}');
-  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /has an unknown format, expected PNG or JPEG/],
+  for (const [chart, want] of [[join(place, 'none.geojson'), /none\.geojson: No such file/], [GAME, /unknown format, expected PNG or JPEG/],
     [lone, /lone\.png: has no world file beside it/], [bad, /bad\.geojson: coordinates\[1\] is at \[712345, 4512345\], expected \[longitude/]]) {
     const run = new Program(t, 'run', GAME, '--view', '--no-record', '--chart', chart);
     assert.equal(await run.ended, 1, run.said);

@@ -1,4 +1,4 @@
-// The chart: selecting a boat moves the chart to it, keys zoom at it, ranges are measured, and there are coordinates, a legend and dark mode.
+// The chart: selecting a boat moves the chart to it, keys zoom at it, ranges are measured; coordinates, a legend and dark mode.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -35,7 +35,7 @@ test('selecting brings the boat into the chart, and keys zoom at it', async (t) 
   const [width, height] = await sight.get(() => [document.getElementById('sheet').clientWidth, document.getElementById('sheet').clientHeight]);
   const fitted = await sight.get(() => squall.view);
   await sight.press('[data-vehicle=red_one]');
-  assert.deepEqual(await sight.get(() => squall.view), fitted, 'what can be seen stays where it is');
+  assert.deepEqual(await sight.get(() => squall.view), fitted, 'what is visible stays where it is');
   await sight.page.focus('#sheet');
   const before = await sight.get(OFF, 'red_one');
   await sight.keys('+', '+', '+');
@@ -80,7 +80,7 @@ test('ranges are measured between boats and places, by hand and by keys', async 
   await sight.keys('Escape');
   assert.equal(await sight.get(() => squall.measured), null);
   await sight.until('the measurement is hidden', () => !document.getElementById('measured').checkVisibility());
-  // By keys alone.
+  // By keys only.
   await sight.keys('m', ']', 'Enter', ']', ']', 'Enter');
   same(await sight.until('both ends are chosen', () => squall.measured), want('blue_one', 'red_one'));
 });

@@ -9,7 +9,7 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** A connection that is silent for this long is given up, s. */
+/** A connection that has been silent for this long is closed, s. */
 const SILENCE_S = 4;
 
 /** Lets a test cut the newest connection like a phone that leaves a network: nothing arrives, leaves or closes. */
@@ -98,7 +98,7 @@ test('a silently dead connection is closed; an idle one is not', async (t) => {
     await sight.press('#pause');
   });
   const { noted, notices } = await sight.get(() => ({ noted: window.noted, notices: document.getElementById('notices').textContent }));
-  assert(noted.some((text) => /Connection lost/.test(text)), `the page says so: ${noted}`);
+  assert(noted.some((text) => /Connection lost/.test(text)), `the page reports it: ${noted}`);
   assert.match(notices, /may not have arrived/);
   assert(await sight.get(() => document.getElementById('connection').hidden));
   await sight.phase('paused');
@@ -114,7 +114,7 @@ test('a page without a game says why and what to type, and shows the result of a
   const place = ['--game', name, '--connect', endpoint];
   const view = new Program(t, 'view', ...place, '--listen', '127.0.0.1:0');
   const sight = await Sight.load(t, browser, await view.url(), { allows: NOBODY });
-  await sight.until('the page says so', () => /No game to show: .*nothing answers there.*squall run surveyor_2v2/s.test(document.getElementById('over').textContent));
+  await sight.until('the page says so', () => /No game to show: .*no response.*squall run surveyor_2v2/s.test(document.getElementById('over').textContent));
   assert.equal(await sight.text('#phase'), 'no game');
   const file = gameFile(t, 'brief', 'pav01_vs_pav01.toml', 'duration_s = 3');
   const record = join(folder(t), 'brief.mcap');

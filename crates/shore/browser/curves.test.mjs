@@ -1,4 +1,4 @@
-// A replay over time: it plays by itself, its address contains the moment, and the chart can be saved.
+// A replay over time: it plays by itself, its address contains the current time, and the chart can be saved.
 
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
@@ -41,7 +41,7 @@ test('a replay begins to play, and its address carries time and boat', async (t)
   }
 });
 
-test('the chart is kept as PNG, and a stretch of it as a video', async (t) => {
+test('the chart is saved as PNG, and a section of the game as a video', async (t) => {
   const sight = await Sight.open(t, browser, `${await replay(t)}#t=30`, { ...SIZE, acceptDownloads: true });
   const [picture] = await Promise.all([sight.page.waitForEvent('download'), sight.press('#png')]);
   assert(/^pav01_vs_pav01.*_00-30\.\d\.png$/.test(picture.suggestedFilename()), picture.suggestedFilename());
@@ -75,7 +75,7 @@ const DECODE = async (base64) => {
   return { frameCount, width: canvas.width, height: canvas.height, paper: at(4, 4), water: at(canvas.width - 4, 60) };
 };
 
-test('a stretch of the game is kept as a GIF that other programs read, on a phone too', async (t) => {
+test('a section of the game is saved as a GIF that other programs can read, on a phone too', async (t) => {
   const url = `${await replay(t)}#t=30`;
   for (const how of [SIZE, { size: { width: 390, height: 844 }, hasTouch: true, isMobile: true }]) {
     const sight = await Sight.open(t, browser, url, { ...how, acceptDownloads: true });

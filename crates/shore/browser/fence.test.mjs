@@ -1,4 +1,4 @@
-// Geofences of real boats: drawn on the chart by pointer or keys, copied for the gateway file, and shown as the gateways have them.
+// Geofences of real boats: drawn on the chart by pointer or keys, copied for the gateway file, and shown as the gateways report them.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -23,7 +23,7 @@ const press = async (sight, x, y) => {
 const text = (sight) => sight.page.inputValue('#fence-toml');
 const corners = (toml) => [...toml.matchAll(/\[(-?\d+\.\d{7}), (-?\d+\.\d{7})\]/g)].map(([, lat, lon]) => [Number(lat), Number(lon)]);
 
-test('a geofence is drawn by hand and by keys, and copied as the gateway file has it', async (t) => {
+test('a geofence is drawn by hand and by keys, and copied in the form of the gateway file', async (t) => {
   const boats = await realBoats(t);
   const sight = await Sight.open(t, browser, boats.url, { permissions: ['clipboard-read', 'clipboard-write'] });
   await badge(sight, 'blue_one', 'disarmed');

@@ -1,4 +1,4 @@
-// Fleets too large to read boat by boat: counts, search, order, filter, and a chart that is not buried in letters.
+// Fleets too large to read boat by boat: counts, search, order, filter, and a chart that is not covered in letters.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -43,7 +43,7 @@ test('a fleet is counted by state, filtered, searched and sorted', async (t) => 
   await sight.page.keyboard.type('red 1');
   const found = await sight.get(LISTED);
   assert(found.includes('red_1') && found.includes('red_12') && found.every((name) => name.startsWith('red_') && name.includes('1')), found.join());
-  assert(await sight.get(() => squall.player.playing === false), 'letters in the field are no commands');
+  assert(await sight.get(() => squall.player.playing === false), 'letters in the field are not commands');
   await sight.page.keyboard.type(' nobody');
   await sight.until('no boat matches', () => [...document.querySelectorAll('.roster p')].some((line) => line.checkVisibility() && /No boat/.test(line.textContent)));
   await sight.keys('Escape');
@@ -58,7 +58,7 @@ test('a fleet is counted by state, filtered, searched and sorted', async (t) => 
   assert.equal(await sight.get(() => document.activeElement.dataset.vehicle), second, 'arrow keys follow the order shown');
 });
 
-test('in a crowd the hull alone shows a tagged boat, and a boat that is selected has its letter', async (t) => {
+test('in a crowd, only the hull shows that a boat is tagged, and a selected boat has its letter', async (t) => {
   const sight = await Sight.open(t, browser, await fleet(t));
   await sight.until('the moment is shown', () => squall.t_s > 49.9);
   const tagged = await sight.get(() => squall.frame.boats.find((boat) => boat.tagged).name);

@@ -13,13 +13,13 @@ import { chromium } from 'playwright-core';
 export const LIMIT_MS = Number(process.env.LIMIT_MS ?? 60_000);
 /** Interval at which a condition is checked, ms. */
 const LOOK_MS = 40;
-/** How long a program has to end by itself, ms. */
+/** How long a program may take to end by itself, ms. */
 const LEAVE_MS = 10_000;
 
 /** The repository. */
 export const ROOT = resolve(fileURLToPath(import.meta.url), '../../../..');
 const SQUALL = resolve(process.env.SQUALL ?? join(ROOT, 'target/release/squall'));
-/** Serves the page's files from this folder, to work on the page without building the program. */
+/** Serves the page's files from this folder, for work on the page without building the program. */
 const WEB = process.env.SQUALL_WEB && resolve(process.env.SQUALL_WEB);
 const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync',
@@ -55,7 +55,7 @@ export async function openAnother(t) {
   return browser;
 }
 
-/** Waits until `condition` returns something true, and returns that. */
+/** Waits until `condition` returns a truthy value, and returns it. */
 export async function until(what, condition, limit_ms = LIMIT_MS) {
   const end_ms = Date.now() + limit_ms;
   for (;;) {
@@ -180,7 +180,7 @@ export class Sight {
     if (WEB) {
       const file = (address) => join(WEB, new URL(address).pathname.replace(/\/$/, '/index.html'));
       await page.route((address) => existsSync(file(address)), async (route) => {
-        // A report has its page elsewhere.
+        // A report's page is elsewhere.
         const { pathname, search } = new URL(route.request().url());
         const leads = pathname === '/' && search === '' && (await route.fetch({ maxRedirects: 0 })).status() === 307;
         return leads ? route.continue() : route.fulfill({ path: file(route.request().url()) });
@@ -204,7 +204,7 @@ export class Sight {
     assert.deepEqual(this.errors, [], 'errors on the page\'s console');
   }
 
-  /** Waits until `condition`, which runs in the page, returns something true, and returns that. */
+  /** Waits until `condition`, which runs in the page, returns a truthy value, and returns it. */
   async until(what, condition, arg = undefined) {
     try {
       const handle = await this.page.waitForFunction(condition, arg, { polling: LOOK_MS, timeout: LIMIT_MS });
@@ -235,7 +235,7 @@ export class Sight {
     for (const key of keys) await this.page.keyboard.press(key);
   }
 
-  /** Does something to the connection, and waits until the page has been greeted on another one. */
+  /** Does something to the connection, and waits until the page has been greeted on a new one. */
   async greetedAnew(act) {
     const hello = await this.page.evaluateHandle(() => squall.hello);
     await act();

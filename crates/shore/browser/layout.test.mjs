@@ -1,4 +1,4 @@
-// The layout around the chart: panels change their size and hide, the legend is beside the chart, and texts keep up with it.
+// The layout around the chart: panels can be resized and hidden, the legend is beside the chart, and texts keep up with it.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -79,7 +79,7 @@ test('the legend is beside the chart and never over it', async (t) => {
   await sight.until('the legend is shown', () => document.querySelectorAll('#chart-legend li canvas').length > 8);
   const [legend, sheet] = [await boxOf(sight, '#chart-legend'), await boxOf(sight, '#sheet')];
   assert(legend.x + legend.width <= sheet.x + 1, JSON.stringify({ legend, sheet }));
-  // The field is whole on the remaining chart.
+  // The whole field is visible on the remaining chart.
   await sight.until('the field fits', () => {
     const { clientWidth } = document.getElementById('sheet');
     return squall.hello.chart.field.corners.every(([x]) => Math.abs((x - squall.view.x) * squall.view.scale) < clientWidth / 2);
@@ -135,7 +135,7 @@ test('details keep up with the chart at ten times real time', async (t) => {
   assert(age_s <= 1, `reports are ${age_s} s old`);
 });
 
-test('the rose has scales and folds', async (t) => {
+test('the rose has scales and can be folded', async (t) => {
   const sight = await Sight.open(t, browser, await live(t, '--speed', '2x'), { size: DESK });
   await sight.press('[data-vehicle=blue_two]');
   await sight.until('the rose is shown', () => document.getElementById('rose').checkVisibility() && squall.helm?.report?.collective);

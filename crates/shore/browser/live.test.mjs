@@ -49,7 +49,7 @@ test('a game is shown as it is played, up to its result', async (t) => {
   t.diagnostic(`${rate.toFixed(1)}x, score ${shown.score.join(':')}, ${shown.events.length} events`);
 });
 
-test('pause, one decision, speed and going on', async (t) => {
+test('pause, one decision, speed and resuming', async (t) => {
   const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
   await sight.goesOn();
@@ -85,7 +85,7 @@ test('pause, one decision, speed and going on', async (t) => {
 test('a helm not viewed before the pause says so, and shows its rose after a step', async (t) => {
   const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
-  // A helm without a position fix weighs nothing yet.
+  // A helm without a position fix has no utilities yet.
   await sight.until('every boat moves', (least) => squall.frame?.boats.every((boat) => boat.speed_m_s > least), GOES_M_S);
   await sight.press('#pause');
   await sight.phase('paused');
@@ -98,7 +98,7 @@ test('a helm not viewed before the pause says so, and shows its rose after a ste
   assert(await sight.page.isVisible('#rose'));
 });
 
-test('an E-stop takes one press and holds every boat until it is released, which asks; a halt as well', async (t) => {
+test('an E-stop takes one press and holds every boat until it is released, which needs confirmation; likewise a halt', async (t) => {
   const game = gameFile(t, 'long', 'pav01_vs_pav01.toml', 'duration_s = 3600');
   const run = new Program(t, 'run', game, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
@@ -115,13 +115,13 @@ test('an E-stop takes one press and holds every boat until it is released, which
         done(fastest);
       }, 20);
     }), [from_s, STANDS_M_S]);
-    assert(fastest <= STANDS_M_S, `a boat goes again at ${fastest} m/s`);
+    assert(fastest <= STANDS_M_S, `a boat moves again at ${fastest} m/s`);
   };
   await go();
   await sight.page.focus('#sheet');
   await sight.keys('e');
   await sight.goesOn();
-  assert.equal(await sight.get(() => squall.events.some((each) => each.event === 'e_stopped')), false, 'no letter alone stops a simulation');
+  assert.equal(await sight.get(() => squall.events.some((each) => each.event === 'e_stopped')), false, 'a single letter does not stop a simulation');
   await sight.keys('E');
   await sight.phase('E-STOPPED');
   await sight.press('#estop');
@@ -139,7 +139,7 @@ test('an E-stop takes one press and holds every boat until it is released, which
   await stay();
   await sight.press('#estop');
   assert(await sight.page.isVisible('#estop-confirm'));
-  assert.equal(await sight.get(() => squall.frame.stopped), true, 'the question alone releases no boat');
+  assert.equal(await sight.get(() => squall.frame.stopped), true, 'the question by itself releases no boat');
   await sight.press('#estop-cancel');
   assert(!(await sight.page.isVisible('#estop-confirm')));
   await sight.press('#estop');

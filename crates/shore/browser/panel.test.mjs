@@ -1,4 +1,4 @@
-// The side of the page: the rose is fully visible, events fold, and the lists are correct.
+// The side panel of the page: the rose is fully visible, events fold, and the lists are correct.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -30,7 +30,7 @@ const WHOLE = (selector) => {
     && box.right <= pane.right;
 };
 
-test("the helm's picture is whole at once, in a game and in a replay, on each screen", async (t) => {
+test("the helm's rose is fully visible at once, in a game and in a replay, on each screen", async (t) => {
   const url = await replay(t, 'pav01_vs_pav01');
   const live = await new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record',
     '--listen', '127.0.0.1:0').url();
@@ -52,7 +52,7 @@ test("the helm's picture is whole at once, in a game and in a replay, on each sc
   }
 });
 
-test('events fold and open again, below each tab by itself, and stay so', async (t) => {
+test('events fold and open again, separately below each tab, and stay that way', async (t) => {
   const url = await replay(t, 'pav01_vs_pav01');
   const sight = await Sight.open(t, browser, url, { size: DESK });
   const open = () => sight.get(() => [document.getElementById('events-fold').getAttribute('aria-expanded') === 'true',
@@ -99,7 +99,7 @@ test('a line of the list shows heading, speed with its curve, mode and carried f
   const modes = await sight.get(() => squall.modes);
   for (const [at, boat] of boats.entries()) {
     const want = { heading: `${String(Math.round(boat.heading_deg) % 360).padStart(3, '0')}°`, speed: `${boat.speed_m_s.toFixed(1)}\u00a0m/s` };
-    await sight.until(`the line of ${boat.name} is of now`, ([name, { heading, speed }]) => {
+    await sight.until(`the line of ${boat.name} is up to date`, ([name, { heading, speed }]) => {
       const [, , told, , pace] = document.querySelector(`[data-vehicle=${name}]`).children;
       return told.textContent === heading && pace.textContent === speed;
     }, [boat.name, want]);
@@ -127,7 +127,7 @@ const INK = (name) => {
   return most;
 };
 
-test('among twenty a side names cover no boat, tagged boats fade, and circles come when they are pointed at', async (t) => {
+test('with twenty boats per side, names cover no boat, tagged boats fade, and circles appear when pointed at', async (t) => {
   const url = await replay(t, 'swarm_20v20', '--set', 'game.duration_s=120');
   const sight = await Sight.open(t, browser, url, { size: DESK, allows: /willReadFrequently/ });
   assert(!(await sight.page.isVisible('#weather')), 'calm weather takes no space');
@@ -167,7 +167,7 @@ test('among twenty a side names cover no boat, tagged boats fade, and circles co
   assert((await sight.get(INK, tagged)) > 0.9 * plain);
 });
 
-test('names are written one way', async (t) => {
+test('names are written consistently', async (t) => {
   const url = await replay(t, 'pav01_vs_pav01');
   const sight = await Sight.open(t, browser, url, { size: DESK });
   await sight.press('[data-vehicle=red_two]');

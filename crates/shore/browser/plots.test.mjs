@@ -12,7 +12,7 @@ after(() => browser.close());
 
 const SIZE = { size: { width: 1400, height: 900 } };
 const PAV01 = scenario('games/pav01_vs_pav01.toml');
-/** A long game is thinned, so that a sample may be half a second old: tolerances of speed and range then. */
+/** A long game is thinned, so a sample may be half a second old: the tolerances of speed and range for that case. */
 const OFF_M_S = 1;
 const OFF_M = 3.2;
 /** A pixel of the time line, s. */
@@ -42,7 +42,7 @@ async function pointAt(sight, plot, part, press = false) {
   if (press) await sight.page.mouse.click(...at);
 }
 
-test('values at the cursor are those of the boats, in all plots at once, and a press goes there', async (t) => {
+test('values at the cursor are those of the boats, in all plots at once, and a press moves the replay there', async (t) => {
   const sight = await Sight.open(t, browser, (await replay(t)).url, SIZE);
   await sight.press('#show-plots');
   await sight.until('a text asks for a boat', () => /Select a boat/.test(document.getElementById('plots').textContent));
@@ -85,7 +85,7 @@ test('values at the cursor are those of the boats, in all plots at once, and a p
   await sight.until('the plots survive a reload', () => document.querySelectorAll('.plot').length === 3 && document.querySelectorAll('.plot-other')[2].value === 'blue_two');
 });
 
-test('a section chosen in a plot is that of all plots and of the time line', async (t) => {
+test('a section chosen in a plot applies to all plots and the time line', async (t) => {
   const sight = await Sight.open(t, browser, (await replay(t)).url, SIZE);
   await sight.press('#show-plots');
   await sight.press('[data-vehicle=red_two]');
@@ -143,24 +143,24 @@ test('the time line shows time, score and event under the pointer, has a scale, 
     const told = [...(await tip()).matchAll(/(?:blue|red) (\d+)/g)].slice(0, 2).map(([, points]) => Number(points));
     await sight.page.mouse.click(await x(event.at_s + 1.5), line.y + 30);
     await sight.until('the replay is there', (t_s) => Math.abs(squall.t_s - t_s) < 0.7, event.at_s + 1.5);
-    await sight.until('the score is the one that was told', (told) => squall.score.join() === told.join(), told);
+    await sight.until('the score is the one in the tip', (told) => squall.score.join() === told.join(), told);
   }
   const [event] = scores;
-  // The section follows the replay, which has to be in it.
+  // The section follows the replay, which must lie in it.
   await sight.page.mouse.click(await x(event.at_s), line.y + 30);
   await sight.until('the replay is at the event', (t_s) => Math.abs(squall.t_s - t_s) < 0.7, event.at_s);
   await pointTo(event.at_s);
   const before = await sight.get(() => squall.span);
   await sight.page.mouse.wheel(0, -400);
   await sight.page.mouse.wheel(0, -400);
-  // Both turns of the wheel have to arrive before the place of a moment is known.
+  // Both turns of the wheel must arrive before the place of a moment is known.
   await sight.page.waitForTimeout(300);
   const after = await sight.until('the section is shorter', (length) => squall.span.to_s - squall.span.from_s < length / 3 && squall.span, before.to_s - before.from_s);
   assert(Math.abs(after.pointed_s - before.pointed_s) < PIXEL_S, `the moment under the pointer stays: ${JSON.stringify({ before, after })}`);
   assert((await tip()).includes(event.vehicle.replaceAll('_', ' ')), 'the event stays under the pointer');
   await sight.page.mouse.click(await x(event.at_s + 5), line.y + 30);
   await sight.until('a press goes to the moment', (t_s) => Math.abs(squall.t_s - t_s) < 0.25, event.at_s + 5);
-  // A moment elsewhere brings its section along.
+  // A moment elsewhere moves the section with it.
   await sight.page.press('#timeline', 'End');
   await sight.until('the section follows', () => squall.t_s > 50 && squall.t_s <= squall.span.to_s + 0.2 && squall.t_s >= squall.span.from_s - 0.2);
   await sight.press('#time-whole');
@@ -169,7 +169,7 @@ test('the time line shows time, score and event under the pointer, has a scale, 
   await sight.until('the tip is gone', () => !document.getElementById('timeline-tip').checkVisibility());
 });
 
-test('a live game has plots too, of what the page has seen', async (t) => {
+test('a live game also has plots, of what the page has received', async (t) => {
   const run = new Program(t, 'run', PAV01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url(), SIZE);
   await sight.press('#show-plots');
@@ -177,12 +177,12 @@ test('a live game has plots too, of what the page has seen', async (t) => {
   await sight.until('twenty seconds are plotted', () => squall.span.to_s - squall.span.from_s > 20);
   await sight.press('#pause');
   await sight.phase('paused');
-  await sight.until('the picture is of now', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
+  await sight.until('the picture is up to date', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
   await sight.until('the values are those of now', () => {
     const values = [...document.querySelectorAll('.plot')[0].querySelectorAll('.plot-value')].map((each) => [each.children[1].textContent, parseFloat(each.querySelector('.value').textContent)]);
     return squall.frame.boats.every(({ name, speed_m_s }) => values.some(([called, value]) => called === name.replace('_', ' ') && Math.abs(value - speed_m_s) < 0.3));
   });
-  // Each boat's curve is drawn: the plot has the colours of four boats, which are nowhere at the same place.
+  // Each boat's curve is drawn: the plot has the colours of four boats, whose curves never coincide.
   await sight.page.locator('.plot select').first().selectOption({ label: 'East, m' });
   await sight.until('the quantity is shown', () => /East/.test(document.querySelector('.plot').getAttribute('aria-label')));
   const colours = await sight.get(() => {

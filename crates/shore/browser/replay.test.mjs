@@ -73,7 +73,7 @@ test('a recording agrees with its events at every moment', async (t) => {
     await check('at the pressed position');
     kinds.add(event.event);
   }
-  assert(kinds.size === 3, `the game has grabs, captures and lost flags, but only ${[...kinds]} were looked at`);
+  assert(kinds.size === 3, `the game has grabs, captures and lost flags, but only ${[...kinds]} were checked`);
   await scrub(sight, result.duration_s);
   await check('at the end');
   assert.deepEqual(await sight.get(() => squall.score), names.map((name) => result.score.teams[name]));
@@ -94,11 +94,11 @@ test('the chance of winning is on the time line once it is known', async (t) => 
   await sight.until('the tip shows it', (words) => document.getElementById('timeline-tip').innerText.includes(words), words);
 });
 
-test('the buttons of a replay: on, back, to events, faster', async (t) => {
+test('the buttons of a replay: forward, back, to events, faster', async (t) => {
   const { file, result } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);
-  // A paused replay is silent, and must not count as dead.
+  // A paused replay sends nothing, and must not count as dead.
   const hello = await sight.page.evaluateHandle(() => squall.hello);
   await sight.page.waitForTimeout(7000);
   assert(await sight.get((hello) => squall.connected && squall.hello === hello, hello));
@@ -175,7 +175,7 @@ test('a recomputed helm agrees with the recording', async (t) => {
   assert(modes.size > 1, `only ${[...modes]}`);
 });
 
-test('a game that is over becomes its replay', async (t) => {
+test('a finished game becomes its replay', async (t) => {
   const place = folder(t);
   const game = gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 200');
   const words = ['--record', place, '--json', join(place, 'result.json'), '--listen', '127.0.0.1:0'];

@@ -59,7 +59,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   });
   assert.equal(cells.length, report.matrix.length);
   const rows = await sight.get(() => [...document.querySelectorAll('.ratings tbody tr')].map((row) => [...row.children].map((each) => each.textContent)));
-  // The order of the terminal; two seeds are too few for intervals.
+  // The same order as on the terminal; two seeds are too few for intervals.
   assert.deepEqual(rows.map((row) => [row[1], row[2], row[3], row[5]]),
     report.entries.map(({ name, rating, wins }) => [name.replaceAll('_', ' '), rating.elo.toFixed(0), 'too few seeds', String(wins)]));
   assert(!/±/.test(await sight.text('.ratings')), 'no intervals');
@@ -121,7 +121,7 @@ test('the ratings are sorted by any column, and each entry has its opponents, it
   assert.match(await chart(), new RegExp(`^Rating, at the end: ${report.entries.map(({ name, rating }) => `${name.replaceAll('_', ' ')} ${rating.elo.toFixed(0)}`).join(', ')}\\.`));
   await sight.press('.ratings tbody th a:text-is("strategy 4")');
   await sight.page.waitForSelector('#entry tbody tr');
-  assert(!(await sight.page.isVisible('.ratings')), 'a view of its own');
+  assert(!(await sight.page.isVisible('.ratings')), 'a separate view');
   const cells = report.matrix.filter(({ row }) => row === 'strategy_4');
   const share = ({ wins, draws, games }) => (wins + draws / 2) / games;
   const hardest = cells.toSorted((a, b) => share(a) - share(b));
@@ -133,7 +133,7 @@ test('the ratings are sorted by any column, and each entry has its opponents, it
   await sight.press('button[aria-label="List the games against idle"]');
   await sight.page.waitForSelector('#games tbody tr');
   assert.equal(await sight.get(() => document.querySelectorAll('#games tbody tr').length), 10);
-  // The address leads here, and the browser's own way back to all entries.
+  // The address leads here, and the browser's Back button leads to all entries.
   await sight.page.reload();
   await sight.page.waitForSelector('#games tbody tr');
   assert.equal(await sight.text('#entry h2'), 'strategy 4');
@@ -145,7 +145,7 @@ test('the ratings are sorted by any column, and each entry has its opponents, it
 
 test('faults in a report or game are explained in text', async (t) => {
   const { place, path, report } = await tournament(t);
-  // Foreign texts, a game with a different result, and a seed with more digits than a JavaScript number holds.
+  // Hostile texts, a game with a different result, and a seed with more digits than a JavaScript number can hold.
   const seed = '9007199254740993';
   report.tournament = HOSTILE;
   report.game = HOSTILE;
@@ -373,10 +373,10 @@ test('two training runs are compared over samples or hours, smoothed, with the b
   await sight.until('hours are not offered', () => document.getElementById('axis').options[1]?.disabled === true);
 });
 
-test('a training is shown as running as long as it runs', async (t) => {
+test('a training run is shown as running while it runs', async (t) => {
   const place = join(folder(t), 'run');
   const training = new Program(t, 'train', scenario('training/first.toml'), '--out', place, '--jobs', '1');
-  await until('it has learnt', () => existsSync(join(place, 'times.csv')) && readFileSync(join(place, 'times.csv'), 'utf8').split('\n').length > 3);
+  await until('it has learned', () => existsSync(join(place, 'times.csv')) && readFileSync(join(place, 'times.csv'), 'utf8').split('\n').length > 3);
   const sight = await Sight.load(t, browser, await view(t, place));
   await sight.until('it runs', () => document.getElementById('state').textContent === 'running');
   assert.match(await sight.text('#facts'), /of 2\.30 million samples \(\d %\) · stage nobody in the way · [\d,]+ samples\/s · .*about .* left/);

@@ -23,7 +23,7 @@ const forge = (sight, message) => sight.get((message) => new Promise((done, fail
   setTimeout(() => fail(new Error('no answer')), 20_000);
 }), message);
 
-test('a page without the token looks on, and one with it acts', async (t) => {
+test('a page without the token can only watch, and one with it can act', async (t) => {
   const port = await freePort();
   // The game has a boat that any page with the token may drive.
   const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
@@ -73,7 +73,7 @@ test('a page without the token looks on, and one with it acts', async (t) => {
   await watching.phase('playing');
 });
 
-test('the address that is printed is one that other machines can use', async (t) => {
+test('the printed address is one that other machines can use', async (t) => {
   const own = Object.values(networkInterfaces()).flat().filter((each) => each.family === 'IPv4' && !each.internal);
   if (own.length === 0) return t.skip('this machine is on no network');
   const run = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '2x', '--no-record', '--listen', '0.0.0.0:0', '--token',
@@ -83,7 +83,7 @@ test('the address that is printed is one that other machines can use', async (t)
   assert.equal(await sight.get(() => squall.hello.rights), true, `with ${url}`);
 });
 
-test('a token that is pasted into the open page counts at once', async (t) => {
+test('a token pasted into the open page takes effect at once', async (t) => {
   const port = await freePort();
   const run = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
     '--token', 'secret');

@@ -109,7 +109,7 @@ const shown = (selector) => (sight) => sight.page.waitForSelector(selector);
 const worst = (sight) => sight.page.evaluate(() => document.getElementById('worst').scrollIntoView());
 const lower = (sight) => sight.page.evaluate(() => scrollTo(0, document.body.scrollHeight));
 
-/** With a shoreline or an image below the field. */
+/** With a shoreline or an image beneath the field. */
 const withChart = (kind) => async (t) => live(PAV01, '--speed', '10x', '--chart', site(folder(t))[kind])(t);
 const fence = async (sight) => {
   await badge(sight, 'red_one', 'disarmed');

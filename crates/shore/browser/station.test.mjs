@@ -27,7 +27,7 @@ const forge = (sight, message, times = 1) => sight.get(([message, times]) => new
 
 const enabled = (sight, id) => sight.page.isEnabled(`#${id}`);
 
-test('an operator arms, delegates and disarms a boat from the page, and everybody sees how it is', async (t) => {
+test('an operator arms, delegates and disarms a boat from the page, and everyone sees its state', async (t) => {
   const boats = await realBoats(t);
   const mine = await Sight.open(t, browser, boats.url);
   const theirs = await Sight.open(t, browser, boats.url.split('#')[0]);
@@ -57,7 +57,7 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
   assert.equal((await badge(mine, 'blue_one', 'delegated')).detail, 'station keeping');
   await mine.press('#operate-go_to_erp');
   await mine.press('#operate-confirm');
-  await mine.until('the refusal is shown', () => /refuses: missing: a recovery point/.test(document.getElementById('operated').textContent));
+  await mine.until('the refusal is shown', () => /Refused by .*: missing: a recovery point/.test(document.getElementById('operated').textContent));
 
   const place = folder(t);
   const { datum } = await mine.get(() => squall.hello.chart.field);
@@ -84,7 +84,7 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
   await badge(theirs, 'blue_one', 'disarmed');
 });
 
-test('without a token of its own a page may stop real boats, and operates them with the token that the terminal shows', async (t) => {
+test('without its own token a page may stop real boats, and with the token from the terminal it operates them', async (t) => {
   const boats = await realBoats(t, { page: [] });
   const sight = await Sight.open(t, browser, boats.url);
   assert.deepEqual(await sight.get(() => [squall.hello.rights, squall.hello.operates]), [true, false]);
@@ -147,14 +147,14 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.press('#mute');
   await sight.until('the alarm sounds again', (muted) => squall.sounded > muted, muted);
 
-  // What it lacks is beside the button, which looks disabled and says the same.
+  // What is missing is beside the button, which looks disabled and gives the same reason.
   await sight.press('#tab-boats');
   await sight.press('[data-vehicle=red_one]');
   await sight.until('the condition is listed', () => /Missing before arming:.*a fresh order/s.test(document.querySelector('.arming').textContent));
   assert.equal(await sight.page.getAttribute('#operate', 'aria-disabled'), 'true');
   // Playwright waits until a button is enabled, unless forced.
   await sight.page.click('#operate', { force: true });
-  assert(!(await sight.page.isVisible('#operate-confirm')), 'no question that would lead nowhere');
+  assert(!(await sight.page.isVisible('#operate-confirm')), 'no question that leads nowhere');
   assert.match(await sight.text('#operated'), /red one cannot be armed yet\. Missing: .*a fresh order/);
   await sight.press('#tab-boats');
 
@@ -202,7 +202,7 @@ test('a boat holds a heading and changes mode on an operator’s command, and it
   await sight.page.fill('#mode-thrust', '71');
   await sight.press('#mode-set');
   await sight.press('#operate-confirm');
-  await sight.until('excessive thrust is refused', () => /refuses: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
+  await sight.until('excessive thrust is refused', () => /Refused by .*: the thrust is 71, expected 0 to 70 %/.test(document.getElementById('operated').textContent));
   await sight.page.fill('#mode-thrust', '20');
   await sight.press('#mode-set');
   assert.match(await sight.text('#operate-question'), /Let blue one’s own controller hold heading 0° at 20 %/);
@@ -246,7 +246,7 @@ test('badges cover no boat and no other badge, however close the boats are', asy
   }
 });
 
-test('the normal end of a game is no failsafe and no alarm', async (t) => {
+test('the normal end of a game causes no failsafe and no alarm', async (t) => {
   const boats = await realBoats(t);
   const sight = await Sight.open(t, browser, boats.url);
   await badge(sight, 'blue_one', 'disarmed');

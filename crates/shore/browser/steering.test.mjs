@@ -1,4 +1,4 @@
-// A boat that people drive: two pages show one game, and one of them drives.
+// A boat driven by a person: two pages show one game, and one of them drives.
 
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -122,7 +122,7 @@ const read = (sight) => sight.get(() => new Promise((done) => {
   };
 }));
 
-test('a gamepad steers once its stick was seen at rest; the boat stops when it is gone', async (t) => {
+test('a gamepad steers once its stick has been at rest; the boat stops when the gamepad is gone', async (t) => {
   const sight = await Sight.open(t, browser, await person(t, '--pace', 'realtime').url(), { before: PADS });
   const plug = (...pads) => sight.get((pads) => {
     window.pads = pads.map(([axes, mapping], index) => ({ index, id: `pad ${index}`, mapping, connected: true,
@@ -193,7 +193,7 @@ const NOTED = () => {
   };
 };
 
-test('a fast game is steered without gaps, and one as fast as can be is said to be too fast', async (t) => {
+test('a fast game is steered without gaps, and one at maximum speed is reported as too fast', async (t) => {
   const sight = await Sight.open(t, browser, await person(t, '--speed', '10x').url(), { before: NOTED });
   await take(sight);
   // Whatever has the focus: a list would take the arrow keys.
@@ -203,7 +203,7 @@ test('a fast game is steered without gaps, and one as fast as can be is said to 
   assert.equal(speed_m_s, 1);
   assert.equal(await sight.get(() => squall.state.speed), 10);
   await goes(sight, course_deg, speed_m_s);
-  // A machine may stall for a while, and then the boat stops as it should: one stretch in ten must be driven.
+  // A machine may stall for a while, and then the boat stops, as it should: one period in ten must be driven.
   const stretch = () => sight.get((name) => new Promise((done) => {
     const middle = (values) => values.sort((one, other) => one - other)[Math.floor(values.length / 2)];
     const from_s = squall.t_s;
@@ -219,7 +219,7 @@ test('a fast game is steered without gaps, and one as fast as can be is said to 
   const seen = [];
   const isSteered = ({ gap_s, went_m_s }) => gap_s < HEEDED_S && Math.abs(went_m_s - speed_m_s) < OFF_M_S / 2;
   while (seen.length < 10 && !seen.some(isSteered)) seen.push(await stretch());
-  assert(seen.some(isSteered), `the page says where to every so many s, and the boat goes: ${JSON.stringify(seen)}`);
+  assert(seen.some(isSteered), `intervals between set-points, s, and the boat's motion: ${JSON.stringify(seen)}`);
   assert(!(await sight.page.isVisible('#steering-note')));
   await sight.page.selectOption('#speed', 'max');
   await sight.until('the page says that the game is too fast', () => /Too fast/.test(document.getElementById('steering-note').textContent)

@@ -31,7 +31,7 @@ const MEASURE = () => {
   });
 };
 
-/** The times of pictures, in order of size, ms. */
+/** The times of pictures in ascending order, ms. */
 async function pictures(sight) {
   await sight.get(() => { window.pictures_ms.length = 0; });
   const times = await sight.until('pictures are made', (count) => window.pictures_ms.length >= count && window.pictures_ms, PICTURES);
@@ -63,7 +63,7 @@ test('two hundred boats are drawn in time', async (t) => {
   const plotted = await pictures(sight);
   said.push(`with two plots of all: ${plotted[PICTURES >> 1].toFixed(1)} ms, one in twenty over ${plotted[Math.floor(0.95 * PICTURES)].toFixed(1)} ms`);
   const { fps, hz, rate, draw_ms } = await sight.get(() => ({ fps: squall.fps, hz: squall.state.frames_hz, rate: squall.state.rate, draw_ms: squall.draw_ms }));
-  t.diagnostic(`median time of a picture: ${said.join('; ')}; ${fps.toFixed(0)} pictures a second, ${hz.toFixed(0)} frames a second, ${rate.toFixed(2)}x`);
-  t.diagnostic(`the page says ${draw_ms.toFixed(1)} ms`);
+  t.diagnostic(`median time of a picture: ${said.join('; ')}; ${fps.toFixed(0)} pictures per second, ${hz.toFixed(0)} frames per second, ${rate.toFixed(2)}x`);
+  t.diagnostic(`the page reports ${draw_ms.toFixed(1)} ms`);
   assert(all_ms < PICTURE_MS && near_ms < PICTURE_MS && plotted[PICTURES >> 1] < PICTURE_MS, said.join('; '));
 });

@@ -38,7 +38,7 @@ async function open(t, { out }, { report = null, hash = '', ...more } = {}) {
   return page;
 }
 
-/** The index of a metric, and how the page writes a value of it. */
+/** The index of a metric, and how the page writes its values. */
 const metric = (report, name) => report.metrics.findIndex((each) => each.name === name);
 const percent = (mean) => `${Number((100 * mean).toPrecision(3))}`.replace('-', '−');
 
@@ -90,7 +90,7 @@ test('axes and metrics have titles and units, and the page can be switched to da
   const metrics = await page.locator('#metric option').allTextContents();
   assert.deepEqual([metrics[0], metrics[8], metrics[13]], ['Games won (%)', 'Time tagged (s)', 'Opponent: points']);
   assert.deepEqual(metrics.filter((text) => text.includes('_')), []);
-  // No share is beyond 0 and 100 %.
+  // No fraction lies beyond 0 to 100 %.
   const shares = await page.locator('#points-table td.estimate small').allTextContents();
   const numbers = shares.flatMap((text) => text.replaceAll('−', '-').match(/-?[\d.]+/g).map(Number));
   assert(numbers.length > 0 && numbers.every((each) => each >= 0 && each <= 100), numbers.join());
@@ -101,15 +101,15 @@ test('axes and metrics have titles and units, and the page can be switched to da
   const dark = await paper();
   assert.notEqual(dark, light);
   await page.reload();
-  assert.equal(await paper(), dark, 'the browser keeps it');
+  assert.equal(await paper(), dark, 'the browser remembers it');
   await page.click('#dark');
   assert.equal(await paper(), light);
   await page.emulateMedia({ colorScheme: 'dark' });
-  // Without a choice of its own it follows the system.
+  // Without a choice it follows the system.
   await page.waitForFunction((dark) => getComputedStyle(document.body).backgroundColor === dark, dark);
 });
 
-test('the metric that is chosen changes every chart, and an entry that is hidden leaves them', async (t) => {
+test('the chosen metric changes every chart, and a hidden entry disappears from them', async (t) => {
   const played = await sweep(t);
   const { report } = played;
   const page = await open(t, played);
@@ -130,7 +130,7 @@ test('the metric that is chosen changes every chart, and an entry that is hidden
   for (const { name } of report.metrics) await page.selectOption('#metric', name);
 });
 
-test('the values of a level are shown to a pointer and to a keyboard', async (t) => {
+test('the values of a level are shown by pointer and by keyboard', async (t) => {
   const played = await sweep(t);
   const { report } = played;
   const page = await open(t, played);
@@ -158,7 +158,7 @@ test('the values of a level are shown to a pointer and to a keyboard', async (t)
   assert(!(await box.isVisible()));
 });
 
-test('a command that is copied is the command of the report', async (t) => {
+test('a copied command is the command in the report', async (t) => {
   const played = await sweep(t);
   const { report } = played;
   const page = await open(t, played);
@@ -178,7 +178,7 @@ test('a command that is copied is the command of the report', async (t) => {
   assert.equal(await copied(), report.worst.at(-1).command);
 });
 
-test('the points are sorted by the column that is pressed', async (t) => {
+test('the points are sorted by the column pressed', async (t) => {
   const played = await sweep(t);
   const { report } = played;
   const page = await open(t, played, { hash: '#metric=distance_m' });
@@ -192,7 +192,7 @@ test('the points are sorted by the column that is pressed', async (t) => {
   assert.deepEqual(await order(), rising.toReversed());
 });
 
-test('texts of a report are texts, and never script', async (t) => {
+test('texts in a report are inserted as text, never as script', async (t) => {
   const played = await sweep(t);
   const { report } = played;
   const command = `squall run '${HOSTILE}'`;

@@ -47,11 +47,11 @@ async function paused(sight) {
   await sight.goesOn();
   await sight.press('#pause');
   await sight.phase('paused');
-  await sight.until('the picture is of now', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
+  await sight.until('the picture is up to date', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
   await sight.page.waitForTimeout(300);
 }
 
-test('a tall field lies across the chart, larger, and north up is a choice that is remembered', async (t) => {
+test('a tall field lies across the chart, larger, and the choice of north up is remembered', async (t) => {
   const sight = await Sight.open(t, browser, await tall(t, 'pav01_vs_pav01.toml', '', '--speed', '5x'));
   const turned = await sight.get(() => squall.view);
   assert.equal(turned.up_deg, 90);
@@ -127,7 +127,7 @@ test('boats, pointer, shoreline, measurements and arrows agree with the turned c
     return { left: ink(-12, 0), up: ink(0, -12) };
   });
   assert(arrow.left > arrow.up, JSON.stringify(arrow));
-  // An arrow of the list, turned by its style, points as the hull does, which may have turned on since it was told.
+  // An arrow in the list, turned by its style, points like the hull, which may have turned a little further since.
   await sight.press('#tab-boats');
   const { arrow_deg, heading_deg } = await sight.get((name) => {
     const svg = document.querySelector(`[data-vehicle=${name}] .heading svg`);
@@ -151,9 +151,9 @@ test('the driving dial turns with the chart', async (t) => {
     await sight.page.mouse.click(middle[0] + right, middle[1] - up);
     await sight.until(`${want}° is ordered`, (want) => document.getElementById('steering-text').textContent.startsWith(want), want);
   }
-  // The trail grows to where the boat goes on the chart: to the left.
+  // The trail grows in the direction in which the boat moves on the chart: to the left.
   const before = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'blue_one'));
-  await sight.until('the boat goes north', (y) => squall.frame.boats.find(({ name }) => name === 'blue_one').y > y + 3, before.y);
+  await sight.until('the boat moves north', (y) => squall.frame.boats.find(({ name }) => name === 'blue_one').y > y + 3, before.y);
   const now = await sight.get(() => squall.frame.boats.find(({ name }) => name === 'blue_one'));
   assert((await placeOf(sight, now.x, now.y))[0] < (await placeOf(sight, before.x, before.y))[0]);
 });

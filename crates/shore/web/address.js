@@ -1,4 +1,4 @@
-// The moment and the boat in the page's address: `#t=83.2&boat=blue_one`.
+// The time and the boat in the page's address: `#t=83.2&boat=blue_one`.
 
 const words = () => new URLSearchParams(location.hash.slice(1));
 
@@ -9,7 +9,7 @@ export function wanted() {
   return { t_s: Number.isFinite(t_s) ? t_s : null, boat: given.get('boat') };
 }
 
-/** Puts a moment and a boat into the address and keeps its other parts. Returns an address to share, without the token. */
+/** Puts a time and a boat into the address and keeps its other parts. Returns an address to share, without the token. */
 export function name(t_s, boat) {
   const given = words();
   given.set('t', t_s.toFixed(1));

@@ -110,7 +110,7 @@ export class Alarms {
     this.show();
   }
 
-  /** Takes the states of real boats, and whether the server is connected. */
+  /** Updates the alarms with the states of real boats, and whether the server is connected. */
   tell(readings, { live, connected }, now_ms) {
     show(this.button, live && readings.length > 0);
     if (live) {
@@ -134,10 +134,10 @@ export class Alarms {
       this.set(name, 'failsafe', true, `Failsafe: ${reading.facts.at(-1)?.words ?? ''}`);
       this.set(name, 'failsafe', false, '');
     }
-    // Without the server, no gateway can be heard.
+    // Without the server, no gateway reports arrive.
     this.set(name, 'silent', kind === 'silent' && connected, 'The gateway is silent.');
     this.set(name, 'link', kind !== 'silent' && !link && (before?.link ?? false), 'The link to the boat is lost.', !link && kind !== 'silent');
-    // The current in the text changes; the text before it says what is wrong.
+    // The current in the text changes; the text before it names the fault.
     const wrong = new Map(reading.alarms.map((words) => [`boat: ${words.split(',')[0]}`, words]));
     for (const [kind, words] of wrong) this.set(name, kind, true, words);
     for (const key of this.alarms.keys()) {

@@ -1,4 +1,5 @@
-// The background of the chart: an image of the site or its shoreline, placed below the field by latitude and longitude.
+// The background of the chart: an image of the site or its shoreline, placed beneath the field by latitude and
+// longitude.
 
 import { latLonOf, latLonWords, placeOf } from './datum.js';
 import { haloText } from './field.js';
@@ -11,7 +12,7 @@ const FAR_M = 50_000;
 /** Opacity of images: field and boats must stay visible, and in dark mode images must not dazzle. */
 const IMAGE_LIGHT = 0.85;
 const IMAGE_DARK = 0.45;
-/** Place names are drawn from this scale on, pixels per metre. */
+/** Minimum scale at which place names are drawn, pixels per metre. */
 const NAMES_SCALE = 0.2;
 
 export class Background {
@@ -51,7 +52,7 @@ export class Background {
       // Only when complete: the game may have arrived first.
       this.given = given;
     } catch (error) {
-      notice(`Cannot show the chart below the field: ${error.message}`);
+      notice(`Cannot show the chart beneath the field: ${error.message}`);
     }
     this.lay();
   }
@@ -88,7 +89,7 @@ export class Background {
       [a * (right - 0.5) + b * (down - 0.5) + c, d * (right - 0.5) + e * (down - 0.5) + f]);
   }
 
-  /** Whether it belongs to another site; if so, a notice says where it is. */
+  /** Whether it belongs to another site; if so, a notice gives its position. */
   isFar() {
     const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
     for (const position of this.positions()) {
@@ -128,7 +129,7 @@ export class Background {
     if (closed) path.closePath();
   }
 
-  /** Draws it below the rest of the field. */
+  /** Draws it beneath the rest of the field. */
   draw(context, view) {
     if (!this.drawn) return;
     context.save();

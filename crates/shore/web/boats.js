@@ -10,7 +10,7 @@ import { palette, teamColour } from './palette.js';
 const HULL = [[0.5, 0], [0.22, 0.42], [-0.15, 0.5], [-0.5, 0.4], [-0.5, -0.4], [-0.15, -0.5], [0.22, -0.42]];
 /** The second team's stripe across the hull. */
 const STRIPE = [[0.12, 0.62], [-0.12, 0.62], [-0.12, -0.62], [0.12, -0.62]];
-/** Minimum length of a hull: as a share of the field's space for each boat, within limits in px. */
+/** Minimum length of a hull: as a fraction of the field's space for each boat, within limits in px. */
 const LENGTH_SHARE = 0.3;
 const LENGTH_MIN_PX = 10;
 const LENGTH_FEW_PX = 20;
@@ -276,7 +276,7 @@ export class Boats {
     }
   }
 
-  /** The marks shown as letters. In a crowd the hull alone says that a boat is out of play. */
+  /** The marks shown as letters. In a crowd, only the hull shows that a boat is out of play. */
   lettersOf(game, index) {
     const plain = game.count > CROWD && index !== this.selected && index !== this.hovered;
     return plain ? game.marks[index] & ~(TAGGED | DISABLED) : game.marks[index];

@@ -2,7 +2,7 @@
 
 import { make, write } from './words.js';
 
-/** How long the button says so, ms. */
+/** How long the button confirms the copy, ms. */
 const SAID_MS = 2000;
 
 /** Copies a text. Pages from other machines have no clipboard. Returns whether it worked. */
@@ -21,7 +21,7 @@ async function copy(text) {
   }
 }
 
-/** A command, and a button that copies it; `what` it does. */
+/** A command, and a button that copies it; `what` describes its effect. */
 export function commandOf(text, what) {
   // A browser would break `--seed` after its first dash.
   const code = make('code', '', '', ...text.split(/(\s+)/).map((word) => (/^\S{1,30}$/.test(word) ? make('span', '', word) : word)));

@@ -117,7 +117,7 @@ export class Controls {
     if (this.eStopped) {
       this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'), true);
     } else {
-      // At once: a question may cost the decisive second, and a stop can always be released.
+      // At once: a confirmation may cost the decisive second, and a stop can always be released.
       closeAsk();
       this.control('e_stop');
     }
@@ -147,7 +147,7 @@ export class Controls {
     byId('rights').title = WATCHING;
   }
 
-  /** Takes halts and E-stops from events; the newest event counts. */
+  /** Reads halts and E-stops from events; the newest event counts. */
   tellEvents(events, reset) {
     if (reset) this.eStopped = false;
     for (const { event } of events) {

@@ -1,10 +1,10 @@
-// The curves of many boats in one plot, drawn a few at a time, so that no picture is late.
+// The curves of many boats in one plot, drawn a few at a time, so that no frame is late.
 
 import { sectionOf } from './quantity.js';
 
 /** The time for one picture, ms. */
 const PICTURE_MS = 3;
-/** On a slow machine, this many curves are drawn for each picture nevertheless. */
+/** Even on a slow machine, this many curves are drawn per frame. */
 const LINES_MIN = 8;
 /** Maximum number of samples of a curve. */
 const SAMPLES_MAX = 120;

@@ -13,7 +13,7 @@ const STYLES = ['solid', 'dashed', 'dotted', 'dashed'];
 
 export const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 
-/** The exponential moving average, corrected for its start; `weight` is the share of the past, 0 to 1. */
+/** The exponential moving average, corrected for its start; `weight` is the weight of the past, 0 to 1. */
 export function smoothed(values, weight) {
   let [sum, part] = [0, 0];
   return values.map((value) => {
@@ -125,7 +125,7 @@ export class CurveChart {
     for (const [x, name] of this.axis.begins ?? []) {
       const left = valToPos(x, 'x', true);
       context.strokeRect(left, bbox.top, 0, bbox.height);
-      // Above the curves, from the line to the right as far as there is room.
+      // Above the curves, from the line to the right as far as space permits.
       const right = bbox.left + bbox.width - context.measureText(plain(name)).width;
       context.fillText(plain(name), Math.min(left, right), bbox.top - 6 * ratio);
     }

@@ -85,7 +85,7 @@ export class Drive {
     }
   }
 
-  /** Takes the speed of the game: the faster it is, the more often the boat needs set-points. */
+  /** Sets the speed of the game: the faster it is, the more often the boat needs set-points. */
   hearState(state) {
     const rates = [state?.speed, state?.rate].filter((each) => each > 0);
     this.wait_ms = Math.min(SEND_MAX_MS, Math.max(SEND_MIN_MS, SEND_SIMULATED_MS / Math.max(1, ...rates)));

@@ -61,7 +61,7 @@ export class Game {
     this.indexOf = new Map(chart.vehicles.map((vehicle, index) => [vehicle.name, index]));
     this.count = count;
     this.teams = chart.vehicles.map((vehicle) => vehicle.team);
-    /** Who plays for each team. */
+    /** Each team's strategies. */
     this.players = chart.teams.map((_, team) => this.playersOf(team));
     Object.assign(this, {
       fromX: floats(count), fromY: floats(count), fromH: floats(count),
@@ -105,7 +105,7 @@ export class Game {
     return this.hello?.mode ?? null;
   }
 
-  /** Whether a running game has ended, also after its server has gone. */
+  /** Whether a running game has ended, even after its server has gone. */
   get isOver() {
     return this.over || this.state?.phase === 'over';
   }
@@ -120,7 +120,7 @@ export class Game {
     if (this.frames > 0) this.keepWake();
   }
 
-  /** Takes a frame: `kind` is 1 for one to show and 2 for a past one. */
+  /** Adds a frame: `kind` is 1 for one to show and 2 for a past one. */
   takeFrame(kind, buffer, now_ms) {
     if (!this.read) return;
     try {
@@ -221,7 +221,7 @@ export class Game {
     return Math.hypot(estimate.x - wake.x[best], estimate.y - wake.y[best]);
   }
 
-  /** Moves the boats to their interpolated positions, one interval behind the newest frame. Returns whether they still move. */
+  /** Moves the boats to their interpolated positions, one interval behind the newest frame. Returns whether they are still moving. */
   pose(now_ms) {
     // The interpolation starts from the picture shown before, not from the frame's arrival.
     if (this.posedFrames !== this.frames) this.begun_ms = this.posed_ms;
@@ -238,7 +238,7 @@ export class Game {
     return done < 1;
   }
 
-  /** Takes a gateway's status. */
+  /** Stores a gateway's status. */
   takeStatus({ vehicle, status }, now_ms) {
     this.statuses.set(vehicle, status);
     this.heard_ms.set(vehicle, now_ms);
@@ -252,7 +252,7 @@ export class Game {
     this.eventVersion += 1;
   }
 
-  /** Who plays for a team: its strategies, or the team's name if it has none. */
+  /** A team's strategies, or its name if it has none. */
   playersOf(team) {
     const strategies = this.vehicles.filter((vehicle) => vehicle.team === team && !vehicle.external).map(({ strategy }) => strategy);
     const different = [...new Set(strategies.filter(Boolean))];

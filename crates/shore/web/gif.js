@@ -119,7 +119,7 @@ export class Gif {
     out.word(this.height);
     out.put(0xf7, 0, 0);
     for (let i = 0; i < 256; i++) out.put(...(this.colours[i] ?? [0, 0, 0]));
-    // Repeats for ever.
+    // Repeats forever.
     out.put(0x21, 0xff, 11, ...[...'NETSCAPE2.0'].map((letter) => letter.charCodeAt(0)), 3, 1, 0, 0, 0);
   }
 

@@ -12,7 +12,7 @@ const PAD = `left stick, after you press one of its buttons${isSecureContext ? '
 
 const HELP = [
   ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'select the previous or next boat'],
-    ['o', 'follow the boat'], ['m', 'measure; Enter chooses the selected boat or the centre of the chart'], ['l', 'legend'], ['j', 'plots'], ['k', 'hide or show the panel'], ['Geofence', 'draw one: Enter adds a corner, Backspace removes it'], ['Escape', 'close, stop driving, or deselect the boat'], ['/', 'find a boat in a large fleet'], ['1 to 4', 'boats, details, events, game']]],
+    ['o', 'follow the boat'], ['m', 'measure; Enter chooses the selected boat or the centre of the chart'], ['l', 'legend'], ['j', 'plots'], ['k', 'hide or show the panel'], ['Geofence', 'draw a geofence: Enter adds a corner, Backspace removes it'], ['Escape', 'close, stop driving, or deselect the boat'], ['/', 'find a boat in a large fleet'], ['1 to 4', 'boats, details, events, game']]],
   ['The game', [['space', 'pause or resume'], ['s', 'pause and step one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or end the halt'],
     ['Shift+E', 'E-stop without confirmation, or release it; with real boats also e alone']]],
   ['Driving', [['d', 'drive the selected boat, if possible'], ['arrows, w a s d', 'course and speed'], ['Escape', 'stop driving'],
@@ -22,7 +22,7 @@ const HELP = [
     ['Shift+s', 'step one decision back'], ['left, right', 'one second back or forward (with Shift: ten)'], ['wheel', 'zoom the time line or the plots; on the time line also + and −, 0 for the whole game']]],
 ];
 
-/** Whether the element takes keys: fields and lists. */
+/** Whether the element handles keys itself: fields and lists. */
 const takesKeys = (element) => element.closest('input, select, textarea') !== null;
 
 /** Whether space and Enter press the element. */
@@ -63,7 +63,7 @@ export class Keys {
     } else if (event.key === 'Enter' && event.target.id === 'sheet' && this.page.takeHere()) event.preventDefault();
     else if (this.arrow(event) || this.replay(event)) event.preventDefault();
     else if (this.plain[event.key]) {
-      // A held key zooms, but does not repeat questions.
+      // A held key zooms, but does not repeat confirmations.
       if (!event.repeat || '+=-_[]s'.includes(event.key)) this.plain[event.key]();
       event.preventDefault();
     }

@@ -12,7 +12,7 @@ const DISPLACED = 1013;
 const DISPLACED_WAIT_S = 30;
 /** Timeout of opening a connection, s. */
 const OPEN_S = 8;
-/** A connection silent for this long, though messages are due, is dead, s. Browsers notice only after minutes. */
+/** A connection that has been silent for this long although messages are due is dead, s. Browsers notice only after minutes. */
 const SILENCE_S = 4;
 /** Interval of checks for this, s. */
 const WATCH_S = 1;
@@ -108,7 +108,7 @@ export class Link {
     this.start();
   }
 
-  /** Gives up a connection that is silent although messages are due. */
+  /** Closes a connection that has been silent although messages are due. */
   watch(now_ms) {
     // A page that slept or was busy received nothing either.
     const slept = now_ms - this.watched_ms > 2 * WATCH_S * 1000;

@@ -59,7 +59,7 @@ export class Log {
     return this.wide && (this.chosen[this.tab] ?? (this.tab === 'boat' && this.low.matches));
   }
 
-  /** The tab above the events; on narrow pages the events have a tab of their own. */
+  /** The tab above the events; on narrow pages the events have their own tab. */
   under(tab, wide) {
     this.tab = tab;
     this.wide = wide;
@@ -86,7 +86,7 @@ export class Log {
     const key = `${game.eventVersion} ${this.filter.value} ${past}`;
     if (key === this.drawn) return;
     this.drawn = key;
-    // In a replay, future events are above, as far as there is space.
+    // In a replay, future events are above, as far as space permits.
     const last = replay ? Math.min(known.length, past + LINES_MAX / 2) : known.length;
     const first = Math.max(0, last - LINES_MAX);
     this.lines = known.slice(first, last).reverse();

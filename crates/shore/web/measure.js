@@ -42,7 +42,7 @@ export class Measure {
     if (this.active && this.ends.length === 1) this.on.changed();
   }
 
-  /** Takes an end, a boat's index or a position; the third one starts over. */
+  /** Adds an end, a boat's index or a position; a third end starts over. */
   take(end) {
     if (this.ends.length === 2) this.ends = [];
     this.ends.push(end);
@@ -94,7 +94,7 @@ export class Measure {
     haloText(context, this.short(reading), (fromX + toX) / 2, (fromY + toY) / 2 - 6);
   }
 
-  /** Where Enter takes an end: the centre of the chart. */
+  /** Where Enter adds an end: the centre of the chart. */
   cross(context, x, y) {
     context.beginPath();
     context.moveTo(x - CROSS_PX, y);

@@ -1,4 +1,4 @@
-// Which way is up on the chart. Everything that shows courses turns with it.
+// The bearing that is up on the chart. Everything that shows courses turns with it.
 
 import { keep, recall } from './storage.js';
 import { show } from './words.js';
@@ -28,7 +28,7 @@ export class North {
     if (view.up_deg === this.up_deg) return;
     this.up_deg = view.up_deg;
     for (const dial of this.dials) dial.up_deg = view.up_deg;
-    // Arrows in texts turn by this.
+    // Angle by which arrows in texts turn.
     document.body.style.setProperty('--turn', `${-view.up_deg}deg`);
   }
 }

@@ -147,7 +147,7 @@ export class Operate {
 
   /** Shows the result of a command. */
   hear({ vehicle, command, refused }) {
-    const words = refused === null ? `${plain(vehicle)} ${DONE[command] ?? `did ${plain(command)}`}.` : `${plain(vehicle)} refuses: ${refused}`;
+    const words = refused === null ? `${plain(vehicle)} ${DONE[command] ?? `did ${plain(command)}`}.` : `Refused by ${plain(vehicle)}: ${refused}`;
     if (vehicle === this.name) this.tellAnswer(words);
     else notice(words);
   }

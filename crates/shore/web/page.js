@@ -16,7 +16,7 @@
 //   letters                       [{ name, letter }] of marks on the chart
 //   badges, alarms, sounded       [{ name, kind, label, detail, area }] of real boats, area as [left, top, right, bottom], px, or null; [{ boat, text, active }] not acknowledged; tones played so far
 //   fences, stops                 [{ outline, keepOuts }] of real boats; [{ name, stopping_m, clearance_m }]
-//   background                    whether an image or a shoreline is shown below the field
+//   background                    whether an image or a shoreline is shown beneath the field
 //   drawn, fps, draw_ms           frames drawn; pictures per second; mean time to draw a picture
 //   view                          { x, y, scale, up_deg }: centre, pixels per metre, and the bearing that is up
 //   span                          { from_s, to_s, pointed_s }: the section that the time line shows, and the moment pointed at, or null
@@ -73,7 +73,7 @@ const TELL_MS = 200;
 const DETAILS_MS = 40;
 /** The same for the list of boats. */
 const LIST_EVERY = 3;
-/** A page without a game says so after this time, ms. */
+/** A page without a game reports that after this time, ms. */
 const MISSING_MS = 1500;
 /** Maximum distance of the pointer from a boat, px. */
 const REACH_MOUSE_PX = 8;

@@ -98,7 +98,7 @@ export class Plot {
     this.built = '';
   }
 
-  /** What is stored. */
+  /** The stored settings. */
   get settings() {
     return { quantity: this.quantity.key, other: this.wantedOther };
   }
@@ -123,14 +123,14 @@ export class Plot {
     });
   }
 
-  /** Builds it again if other curves, colours or a hidden place demand it, and draws it if something has changed. Returns whether it was drawn. */
+  /** Rebuilds it if its curves, colours or visibility have changed, and draws it if something has changed. Returns whether it was drawn. */
   draw(game, source, boats, colourOf) {
     const { clientWidth: width, clientHeight: height } = this.place;
     if (width < 40 || height < 40) return false;
     show(this.other, this.quantity.to === true);
     const build = `${game.greeted} ${this.quantity.key} ${this.other.value} ${boats.join()} ${palette.version}`;
     const { span } = this.on;
-    // A crowd is drawn over several pictures.
+    // A crowd is drawn over several frames.
     const { job } = this.crowd;
     if (job && build === this.built && job.size === `${width} ${height}`) return this.drawCrowd();
     const drawn = `${build} ${source.version} ${span.version} ${width} ${height}`;
@@ -160,7 +160,7 @@ export class Plot {
     return this.curves.length > NAMED_MAX;
   }
 
-  /** Starts to draw many curves: in the end, the axes follow. */
+  /** Starts to draw many curves; the axes follow at the end. */
   beginCrowd(size) {
     const { span } = this.on;
     const [from_s, to_s] = [span.from_s, span.to_s];
@@ -283,7 +283,7 @@ export class Plot {
     // The unit is in the title.
     const bare = (words) => words.split('\u00a0')[0];
     const shown = !this.many ? curves.map((_, i) => i) : [this.focused].filter((i) => i >= 0);
-    // An order is known for few boats.
+    // Orders are known for only a few boats.
     const said = shown.map((i) => ({ ...curves[i], words: wordsOf(i) })).filter(({ dash, words }) => !dash || words !== '–');
     this.values.replaceChildren(make('span', 'plot-time', clock(t_s)), ...said.map(({ name, colour, dash, words }) => {
       const swatch = make('span', dash ? 'plot-swatch dashed' : 'plot-swatch');

@@ -1,4 +1,5 @@
-// Plots of boats over the game, below the chart: any quantities of any boats, with the section and the moment of the time line.
+// Plots of boats over the game, below the chart: any quantities of any boats, with the section and the current time of
+// the time line.
 
 import { Curves } from './curves.js';
 import { History } from './history.js';
@@ -92,7 +93,7 @@ export class Plots {
     this.button.setAttribute('aria-pressed', String(this.open));
   }
 
-  /** Adds a boat, a team or everybody. */
+  /** Adds a boat, a team or all boats. */
   choose(value) {
     const { vehicles, chart } = this.game;
     const team = chart.teams.findIndex((_, index) => value === `team ${index}`);
@@ -179,7 +180,7 @@ export class Plots {
     return chip;
   }
 
-  /** Draws at most one plot for each picture, and in a live game not more often than there is time for. */
+  /** Draws at most one plot per frame, and in a live game only as often as time permits. */
   draw(game, now_ms) {
     if (!this.open || !game.hello) return;
     const live = game.mode === 'live';

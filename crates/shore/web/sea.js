@@ -110,7 +110,7 @@ export class Sea {
   }
 }
 
-/** Wind and current below this count as none, m/s. */
+/** Wind and current below this count as zero, m/s. */
 const LEAST_M_S = 0.005;
 
 /** Wind and current beside the chart. */

@@ -32,7 +32,7 @@ export class Span {
     return this.shown !== null;
   }
 
-  /** Takes the limits of the game. A section at its end moves on with it. */
+  /** Sets the limits of the game. A section at its end moves along with it. */
   setWhole(from_s, to_s) {
     const [before_s, until_s] = this.whole;
     const end_s = Math.max(to_s, from_s + LEAST_S);

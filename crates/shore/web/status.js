@@ -75,7 +75,7 @@ export class Status {
     return [PHASES[phase] ?? phase ?? 'live', phase === 'playing' ? 'good' : 'warn'];
   }
 
-  /** The text over the chart while the game does not run. */
+  /** The text over the chart while the game is not running. */
   tellOver(game) {
     const { state } = game;
     let words = '';
@@ -89,11 +89,11 @@ export class Status {
     show(byId('watch'), ended && game.mode === 'replay');
   }
 
-  /** Says why there is no game, and what to do. */
+  /** Explains why there is no game, and what to do. */
   tellNone(reason) {
     write(byId('phase'), 'no game');
     byId('phase').dataset.tone = 'warn';
-    this.tellMiddle(`No game to show: ${reason}.\nTo start one, type this in a terminal: ${START}\nIt appears here by itself.`);
+    this.tellMiddle(`No game to show: ${reason}.\nTo start one, type this in a terminal: ${START}\nIt will appear here automatically.`);
   }
 
   /** Shows a text in the middle of the chart; one with a command can be copied. */
@@ -157,13 +157,13 @@ export class Status {
   }
 }
 
-/** Whether the game, or its replay, stands at its end. */
+/** Whether the game, or its replay, is at its end. */
 function isAtItsEnd({ mode, isOver, player, t_s }) {
   if (mode !== 'replay') return isOver;
   return Boolean(player) && !player.playing && t_s >= player.to_s - 1e-6 && player.to_s > player.from_s;
 }
 
-/** How to see a game again that ran elsewhere. */
+/** How to replay a game that ran elsewhere. */
 function endWords({ mode, state }) {
   if (mode === 'replay') return [];
   const { recording, phase } = state ?? {};

@@ -1,4 +1,5 @@
-// The stick of a gamepad. It counts only after it has been at rest: one that is deflected from the start steers nothing.
+// The stick of a gamepad. It is used only after it has been at rest: a stick that is deflected from the start steers
+// nothing.
 
 /** A stick closer to its centre than this is at rest. */
 const DEAD_ZONE = 0.18;

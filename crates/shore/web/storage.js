@@ -1,4 +1,4 @@
-// Settings of this browser. Some browsers store nothing: then a setting lasts as long as the page.
+// Settings of this browser. Some browsers store nothing; a setting then lasts as long as the page.
 
 /** The stored text, or null. */
 export function recall(key) {

@@ -7,7 +7,7 @@ import { palette } from './palette.js';
 import { scrolled, tableOf } from './table.js';
 import { make, significant, stem, svg } from './words.js';
 
-/** What never changes. Texts of a report only ever become text nodes. */
+/** Constant parts. Texts of a report only ever become text nodes. */
 const SECTIONS = `
   <dl id="sweep-facts"></dl>
   <div class="bar">
@@ -100,7 +100,7 @@ export class Sweep {
     drawFailures();
     let width = innerWidth;
     addEventListener('resize', () => {
-      // The keyboard of a phone changes the height alone.
+      // The keyboard of a phone changes only the height.
       if (innerWidth === width) return;
       width = innerWidth;
       requestAnimationFrame(() => drawCurves());
@@ -185,7 +185,7 @@ const SEEDS_MIN = 5;
 const hasIntervals = () => report.games_per_point >= 2 * SEEDS_MIN;
 const isBounded = (estimate) => Number.isFinite(estimate?.low) && Number.isFinite(estimate?.high);
 
-/** The interval of an estimate. No share is beyond 0 and 1; a difference of two is at least -1. */
+/** The interval of an estimate. Fractions are clamped to 0 to 1, and differences of two to at least -1. */
 function interval(estimate, least = 0) {
   if (!estimate) return '';
   const [low, high] = isShare() ? [Math.max(least, estimate.low), Math.min(1, estimate.high)] : [estimate.low, estimate.high];
@@ -197,7 +197,7 @@ function interval(estimate, least = 0) {
 const twoLines = (estimate, of = shown) =>
   estimate ? [of(estimate.mean), interval(estimate) && make('small', '', interval(estimate, of === shown ? 0 : -1))] : [NONE];
 
-/** A value of an axis: numbers with as many digits as tell its levels apart. */
+/** A value of an axis: numbers with enough digits to distinguish its levels. */
 function valueText(axis, text) {
   const value = Number(text);
   return text.trim() === '' || !Number.isFinite(value) ? text : significant(value, axisDigits[axis]);
@@ -214,7 +214,7 @@ function digitsFor(axis) {
   return 9;
 }
 
-/* What the report says. */
+/* The data of the report. */
 
 const effectOf = (axis, entry) => report.effects[axis * report.entries.length + entry];
 const levelsOf = (axis) => effectOf(axis, 0)?.levels ?? [];
@@ -262,7 +262,7 @@ const entryHead = (entry) => make('h3', '', '', sampleOf(entry), ' ', soft(repor
 
 /* Head */
 
-/** The first seed to the digit: a number of this language has too few for all seeds. */
+/** The first seed as text, because JavaScript numbers cannot represent all seeds. */
 const firstSeed = () => /--seed (\d+)$/.exec(report.points[0]?.command ?? '')?.[1] ?? String(report.seed);
 
 function drawFacts() {
@@ -320,7 +320,7 @@ function choose(name) {
   draw();
 }
 
-/** Puts something into the page's address; what else it says stays. */
+/** Puts something into the page's address; its other parts are kept. */
 function putInAddress(name, value) {
   const words = new URLSearchParams(location.hash.slice(1));
   words.set(name, value);
@@ -348,7 +348,7 @@ function drawLegend() {
 
 /* Scales */
 
-/** From where to where an axis of numbers goes that shows these estimates: far intervals are cut. */
+/** The limits of a numeric axis for these estimates: wide intervals are truncated. */
 function domainOf(estimates) {
   if (isShare()) return [0, 1];
   const means = estimates.map((estimate) => estimate.mean);
@@ -367,13 +367,13 @@ function domainOf(estimates) {
   return [low === 0 ? 0 : Math.max(floor, low - margin), high + margin];
 }
 
-/** How uneven numbers are: their standard deviation by their mean. */
+/** Unevenness of numbers: their standard deviation divided by their mean. */
 function unevenness(numbers) {
   const mean = numbers.reduce((sum, each) => sum + each, 0) / numbers.length;
   return Math.sqrt(numbers.reduce((sum, each) => sum + (each - mean) ** 2, 0) / numbers.length) / Math.abs(mean);
 }
 
-/** Where the levels of an axis stand, 0 to 1: to scale, by logarithms where they are spaced so, or side by side. */
+/** Positions of an axis's levels, 0 to 1: to scale, logarithmic if they are spaced logarithmically, or side by side. */
 function placesOf(levels) {
   const values = levels.map((level) => level.value);
   const apart = (i, count) => (count === 1 ? 0.5 : i / (count - 1));
@@ -395,7 +395,7 @@ function widthOf(text, size = 12.5) {
   return ruler.measureText(text).width;
 }
 
-/** A text that is at most so wide, without its middle if need be: names often differ at their ends. */
+/** A text limited to this width, with its middle omitted if necessary: names often differ at their ends. */
 function shortened(text, wide) {
   if (widthOf(text) <= wide) return text;
   const without = (kept) => `${text.slice(0, Math.ceil(kept / 2))}…${text.slice(text.length - Math.floor(kept / 2))}`;
@@ -406,11 +406,11 @@ function shortened(text, wide) {
 
 /* Curves */
 
-/** How labels slant, rad, and how long they are then at most. */
+/** Slant of labels, rad, and their maximum length then. */
 const SLANT = 0.7;
 const SLANTED_MAX = 150;
 
-/** How the labels below a chart are written: level, or slanted where they would touch; some are left out of many numbers. */
+/** Layout of the labels below a chart: horizontal, or slanted if they would touch; of many numbers, some are omitted. */
 function labelsBelow(labels, xs, kind, wide) {
   const widths = labels.map((label) => widthOf(label));
   if (kind === 'categories') {
@@ -436,7 +436,7 @@ function labelsBelow(labels, xs, kind, wide) {
   return { slanted: false, texts, height: 22 };
 }
 
-/** A path through places, broken where there is none. */
+/** A path through positions, interrupted where one is missing. */
 function pathOf(places) {
   const step = (place, i) => `${i > 0 && places[i - 1] ? 'L' : 'M'}${place[0].toFixed(1)} ${place[1].toFixed(1)}`;
   return places.map((place, i) => (place ? step(place, i) : '')).join('');
@@ -474,10 +474,10 @@ function drawEntry(estimates, entry, { xs, y, low, high }) {
 }
 
 const LEFT_LABEL_MIN = 34;
-/** How wide a chart is drawn for paper, two of them side by side. */
+/** Width of a chart for printing, two side by side. */
 const PRINTED_WIDTH = 340;
 
-/** Draws one axis' curves into its card; gives whether a band was cut. */
+/** Draws one axis's curves into its card; returns whether a band was cut. */
 function drawCurve(axis, card, width) {
   const holder = card.querySelector('.chart');
   const wide = Math.max(240, width ?? (holder.clientWidth || 420));
@@ -605,7 +605,7 @@ function drawCurves(width) {
 
 /* Heat maps */
 
-/** The colour of a share of the scale, and black or white, whichever is read better on it. */
+/** The colour at a fraction of the scale, and black or white, whichever is more legible on it. */
 function heatColour(share) {
   const { heat } = palette;
   const place = Math.min(1, Math.max(0, share)) * (heat.length - 1);
@@ -616,7 +616,7 @@ function heatColour(share) {
   return { background: `rgb(${colour.join(' ')})`, ink: luminance > 0.179 ? '#000000' : '#ffffff' };
 }
 
-/** By point of a grid: the place of its level on each axis. The last axis changes first. */
+/** By point of a grid: the position of its level on each axis. The last axis varies fastest. */
 function placesInGrid() {
   const counts = report.axes.map((_, axis) => levelsOf(axis).length);
   if (report.design !== 'grid' || counts.length < 2 || counts.reduce((a, b) => a * b, 1) !== report.points.length) return null;
@@ -630,7 +630,7 @@ function placesInGrid() {
   });
 }
 
-/** The means of an entry by level of two axes, over all others; none where a point has none. */
+/** The means of an entry by level of two axes, over all others; null where a point has none. */
 function heatCells(places, entry) {
   const cells = levelsOf(state.rows).map(() => levelsOf(state.columns).map(() => []));
   places.forEach((place, point) => cells[place[state.rows]][place[state.columns]].push(metricOf(report.points[point].entries[entry].metrics)));
@@ -728,7 +728,7 @@ function track(contrast, [low, high]) {
   return make('div', { class: 'track', 'aria-hidden': 'true' }, '', parts);
 }
 
-/** The numbers below a tornado chart: its ends, and 0 where it does not touch them. */
+/** The numbers below a tornado chart: its ends, and 0 if it does not overlap them. */
 function endsOf([low, high]) {
   const zero = 100 * (-low / (high - low));
   const marks = [make('span', { style: 'left: 0' }, signed(low)), make('span', { style: 'right: 0' }, signed(high))];
@@ -770,7 +770,7 @@ function drawTornado() {
 
 const PAGE_ROWS = 20;
 
-/** The rows of the page that is looked at, and the buttons to others where there are more. */
+/** The rows of the current page, and buttons to the others if any. */
 function paged(name, rows, redraw, size = PAGE_ROWS) {
   const pages = Math.max(1, Math.ceil(rows.length / size));
   const page = Math.min(pages - 1, state.pages[name] ?? 0);
@@ -837,7 +837,7 @@ function drawDifferences() {
 
 /* Interactions */
 
-/** What is low and what is high of an axis: the halves of its levels. */
+/** The low and the high part of an axis: the halves of its levels. */
 function halvesOf(key) {
   const axis = report.axes.indexOf(key);
   const labels = levelsOf(axis).map((level) => valueText(axis, level.label));
@@ -887,7 +887,7 @@ function drawInteractions() {
   byId('interactions-pages').replaceChildren(page.nav ?? '');
 }
 
-/** A link to a game, if a server plays it again. */
+/** A link to a game, if a server can replay it. */
 function watchOf(game, what = `game ${game}`) {
   return isPlayable ? make('a', { class: 'watch', href: addressOfGame(game), 'aria-label': `Watch ${what}` }, 'Watch') : null;
 }
@@ -907,7 +907,7 @@ function sortedPoints() {
   const { column, down } = state.sort;
   const compare = (a, b) => {
     const [one, other] = [sortKey(a.point, a.index, column), sortKey(b.point, b.index, column)];
-    // Points without a number come last, whichever way.
+    // Points without a number come last, in either order.
     if (one === null || other === null) return Number(one === null) - Number(other === null) || a.index - b.index;
     const order = typeof one === 'string' ? one.localeCompare(other) : one - other;
     return (down ? -order : order) || a.index - b.index;
@@ -950,7 +950,7 @@ function gamesOf(index) {
   return make('button', { type: 'button', 'aria-pressed': String(state.point === index), 'aria-label': `List the games of point ${index}`, onclick: show }, 'Games');
 }
 
-/* The games of a point. The server has them: all together would be many times as much as the report. */
+/* The games of a point, from the server: all of them together would be many times the size of the report. */
 
 const RESULTS = { all: 'all', won: 'won', drawn: 'drawn', lost: 'lost', none: 'without a result' };
 const resultOf = ({ score }) => (score === null ? 'none' : score[0] === score[1] ? 'drawn' : score[0] > score[1] ? 'won' : 'lost');
@@ -969,7 +969,7 @@ async function showGames(point, isAsked) {
   } catch (error) {
     found = { games: [], left_out: 0, problem: error.message };
   }
-  // Another point may have been asked for meanwhile.
+  // Another point may have been requested in the meantime.
   if (state.point !== point) return;
   state.games = found;
   drawGames();
@@ -997,7 +997,7 @@ function drawGames() {
   const rows = shownGames.filter((game) => wanted === 'all' || resultOf(game) === wanted);
   const { problem, left_out } = state.games ?? {};
   const about = state.games === null ? 'Loading the list.' : `${rows.length} games of point ${state.point}${left_out ? `, of the first ${state.games.games.length}` : ''}. `
-    + 'Before you can watch a game, it is rerun, which takes some seconds.';
+    + 'Before you can watch a game, it is rerun, which takes a few seconds.';
   byId('games-note').textContent = problem ? `${about} Their results are unknown: ${problem}` : about;
   const heads = [columnHead('', false), columnHead('Entry', false), columnHead('Team', false), columnHead('Seed', true), columnHead('Points', true),
     columnHead('Result', false)];

@@ -12,7 +12,7 @@ export function watch(address, label) {
   return make('td', '', '', make('a', { class: 'watch', href: address, 'aria-label': label }, 'Watch'));
 }
 
-/** What scrolls sideways, also by keys. */
+/** A container that scrolls horizontally, also by keyboard. */
 export const scrolled = (label, table) => make('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label }, '', table);
 
 /** A table with column headers, each `[text, classes]` or an element. */

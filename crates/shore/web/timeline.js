@@ -25,7 +25,7 @@ const LANE_TOP = 8;
 const LANE = 9;
 const LANE_LOW = 7;
 const LOW_PX = 100;
-/** Events this close to the pointer are told, px. */
+/** Events this close to the pointer are listed, px. */
 const NEAR_PX = 6;
 const TOLD_MAX = 4;
 const STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1200, 3600];
@@ -190,7 +190,7 @@ export class Timeline {
     this.point(this.timeAt(event.clientX));
   }
 
-  /** Points at a moment, or nowhere, and tells what is there. */
+  /** Points at a time, or nowhere, and lists the events there. */
   point(t_s) {
     this.span.point(t_s);
     show(this.tip, t_s !== null);
@@ -357,7 +357,7 @@ export class Timeline {
     this.drawHandle(context, at, base, width);
   }
 
-  /** Draws everything that stays while the replay plays. */
+  /** Draws everything that does not change while the replay is playing. */
   drawStill(key, width, height, ratio) {
     // The legend has the same colours.
     if (this.kept !== '' && this.kept.split(' ')[3] !== String(palette.version)) this.marksVersion = -1;
@@ -409,7 +409,7 @@ export class Timeline {
     }
   }
 
-  /** Where the section is in the game. */
+  /** The position of the section in the game. */
   drawOverview(context, width, height) {
     if (!this.span.zoomed) return;
     const [first_s, last_s] = this.span.whole;

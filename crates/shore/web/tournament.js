@@ -65,7 +65,7 @@ export class Tournament {
       entries.length === 0 ? 'No result: no seed has all its games.' : '',
       entries.length > 0 && this.hasFew ? `Only ${this.report.seeds_counted} ${this.report.seeds_counted === 1 ? 'seed' : 'seeds'}: confidence intervals need at least ${SEEDS_MIN}.` : '',
       this.unplayable ? `Games cannot be watched: ${this.unplayable}` : '',
-      games_left_out > 0 ? `${games_left_out} games are left out because others with the same seed are missing.` : '',
+      games_left_out > 0 ? `${games_left_out} games are excluded because others with the same seed are missing.` : '',
       ...failures.slice(0, 5).map((each) => `Could not start: ${each.blue} against ${each.red}, seed ${each.seed}: ${each.why}`),
       failures.length > 5 ? `${failures.length - 5} more games could not start.` : '',
     ];
@@ -250,7 +250,7 @@ export class Tournament {
     const found = this.chosenGames();
     const label = make('label', '', '', make('span', '', 'Show '), this.filter);
     const said = make('p', '', found.length === 0 ? 'No such games.' : '');
-    const words = `${found.length} games${this.unplayable ? '' : '. Watching a game first replays it, which takes some seconds.'}`;
+    const words = `${found.length} games${this.unplayable ? '' : '. Watching a game first replays it, which takes a few seconds.'}`;
     const more = make('button', '', `${Math.min(LISTED, found.length - this.listed)} more`);
     more.id = 'games-more';
     more.type = 'button';

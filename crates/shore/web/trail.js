@@ -79,7 +79,7 @@ export class Trails {
     const near = this.nearby(view);
     const stride = 2 ** Math.max(0, Math.ceil(Math.log2((near * this.kept) / PIECES_MAX)));
     context.lineJoin = 'round';
-    // The more trails, the fainter, or they would hide the boats.
+    // The more trails, the fainter they are; otherwise they would hide the boats.
     const fade = Math.min(1, Math.sqrt(CLEAR / near));
     for (const [young, old, strength] of BANDS) {
       for (let team = 0; team < colours.length; team++) {
@@ -142,7 +142,7 @@ export class Trails {
 /** Minimum interval between redraws while only trails or the position of the chart change, ms. */
 const AGAIN_MS = 150;
 
-/** The canvas of the trails. It is redrawn from time to time and otherwise moves with the chart, which costs almost nothing. */
+/** The canvas of the trails. It is redrawn occasionally and otherwise moves with the chart, which costs almost nothing. */
 export class TrailLayer {
   constructor(canvas) {
     this.canvas = canvas;

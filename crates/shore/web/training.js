@@ -15,7 +15,7 @@ const ROWS_MAX = 200;
 /** The newest part of a run whose rate counts as the current one. */
 const RECENT_S = 60;
 
-/** The share of won, drawn or lost games. */
+/** The fraction of won, drawn or lost games. */
 const share = ({ won, drawn, lost }) => (100 * (won + drawn / 2)) / Math.max(1, won + drawn + lost);
 
 /** Curves of evaluations, one per opponent: title, unit, value, and range if known. */
@@ -49,7 +49,7 @@ class Run {
     this.best = this.evaluations.filter(({ samples }) => samples === at);
   }
 
-  /** Runs of earlier versions do not say which policy is the best: the newest with the highest win rate, as in crates/learn/src/train/mod.rs. */
+  /** Runs of earlier versions do not record which policy is the best: the newest with the highest win rate, as in crates/learn/src/train/mod.rs. */
   bestOfEarlierVersion() {
     const all = [...new Set(this.evaluations.map(({ samples }) => samples))];
     const won = (at) => this.evaluations.filter(({ samples }) => samples === at).reduce((sum, each) => sum + share(each), 0);
@@ -71,7 +71,7 @@ class Run {
     return this.times.at(-1)?.elapsed_s ?? null;
   }
 
-  /** Samples per second: lately while it runs, else on average; null if unknown. */
+  /** Samples per second: recent while it is running, otherwise the average; null if unknown. */
   get rate() {
     const last = this.times.at(-1);
     const from = this.running ? this.times.findLast(({ elapsed_s }) => elapsed_s < last.elapsed_s - RECENT_S) : null;
@@ -97,7 +97,7 @@ class Run {
 
   /** Its size and speed, in words. */
   facts() {
-    if (!this.last) return 'Nothing learnt yet.';
+    if (!this.last) return 'Nothing learned yet.';
     const all = this.plan?.samples;
     const done = all ? `${millions(this.last.samples)} of ${millions(all)} million samples (${Math.floor((100 * this.last.samples) / all)} %)`
       : `${millions(this.last.samples)} million samples`;
@@ -224,7 +224,7 @@ export class Training {
     AGAINST.forEach(([, , value], which) => this.against[which].take(shown.flatMap((run) => opponents.map((opponent, colour) => {
       const seen = run.evaluations.filter((each) => each.opponent === opponent);
       const best = run.bestSamples === null ? null : at(run, run.bestSamples);
-      // A single opponent leaves the colours to the runs.
+      // With a single opponent, colours distinguish the runs.
       const style = opponents.length > 1 ? { colour, style: Math.floor(colour / 4) + run.style } : { colour: run.style, style: run.style };
       return { name: name(run, opponent), xs: seen.map(({ samples }) => at(run, samples)), values: seen.map(value), best, dots: true, ...style };
     }).filter(({ xs }) => xs.length > 0)), how));
@@ -250,7 +250,7 @@ export class Training {
     const heads = [['Run'], ['State'], ['Samples', 'number'], ['Time', 'number'], ['Speed', 'number'], ['Best win rate', 'number'], ['Best after', 'number'], ['Seed', 'number']];
     const plays = shown.filter(({ plan }) => plan?.play).flatMap(({ name, plan }) => [
       make('p', 'play', shown.length > 1 ? `Play the best policy of ${name}:` : 'Play the best policy:'), commandOf(plan.play, `plays the best policy of ${name}`)]);
-    const none = shown.every(({ plan }) => !plan?.play) ? [make('p', 'faint', 'There is no best policy yet: it comes with the first evaluation.')] : [];
+    const none = shown.every(({ plan }) => !plan?.play) ? [make('p', 'faint', 'No best policy yet: the first evaluation determines it.')] : [];
     this.best.replaceChildren(...(this.problem ? [make('p', 'note', this.problem)] : []), tableOf('Runs', heads, shown.map(row)), ...plays, ...none);
   }
 

@@ -2,7 +2,7 @@
 
 const SCALE_MIN = 0.02;
 const SCALE_MAX = 120;
-/** The inner part of the chart, as a share of its width and height. */
+/** The inner part of the chart, as a fraction of its width and height. */
 const INNER = 0.6;
 /** The chart turns if the field becomes this many times larger. */
 const TURN_GAIN = 1.25;
@@ -18,7 +18,7 @@ export class View {
     this.bounds = { left: 0, right: 100, bottom: 0, top: 100 };
     /** Grows with every change, so that layers know when to redraw. */
     this.version = 0;
-    /** Whether it is as fitted, not moved by the user. */
+    /** Whether it is still fitted, not moved by the user. */
     this.fitted = true;
     /** Whether east is up, because the field then fits better. */
     this.turned = false;
@@ -74,7 +74,7 @@ export class View {
     this.fit();
   }
 
-  /** Everything that is fitted. */
+  /** The area to fit. */
   widen(points) {
     const { left, right, bottom, top } = this.bounds;
     const [xs, ys] = [0, 1].map((axis) => points.map((point) => point[axis]));

@@ -14,7 +14,7 @@ export function show(element, visible) {
   if (element.hidden === visible) element.hidden = !visible;
 }
 
-/** Gives an element its attributes, and children: those that are missing are left out, and lists may be nested. */
+/** Sets an element's attributes and children: missing ones are omitted, and lists may be nested. */
 function furnish(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
@@ -57,7 +57,7 @@ export function wrapDeg(deg) {
   return ((deg % 360) + 360) % 360;
 }
 
-/** A number with this many decimals, or a dash. */
+/** A number to this many decimal places, or a dash. */
 export function number(value, places = 1, unit = '') {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   const text = value.toFixed(places).replace('-', '−');

@@ -9,9 +9,9 @@ pub struct Conditions {
     pub delay: Duration,
     /// Maximum extra delay. Messages over one link stay in order.
     pub jitter: Duration,
-    /// Share of published messages that a congested link drops.
+    /// Fraction of published messages that a congested link drops.
     pub loss: f64,
-    /// Share of published messages that arrive damaged, from 0 to 1, and the kind of damage.
+    /// Fraction of published messages that arrive damaged, from 0 to 1, and the kind of damage.
     pub damaged: (f64, Damage),
     /// A link closes after hearing nothing from the other side for this long.
     pub lease: Duration,

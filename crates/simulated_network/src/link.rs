@@ -147,7 +147,7 @@ impl State {
             return;
         };
         if self.links[link].silent_since_ns[usize::from(up)].is_some() {
-            // Packets in flight count as a sign of life too.
+            // Packets in flight also count as a sign of life.
             self.begin_lease(link, up, self.conditions.lease);
         }
         let direction = self.links[link].direction(up);
@@ -174,7 +174,7 @@ impl State {
             .collect()
     }
 
-    /// One side of these links hears nothing from now on.
+    /// One side of these links receives nothing from now on.
     pub(crate) fn begin_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             for at_hub in [false, true] {
@@ -255,7 +255,7 @@ impl State {
         }
     }
 
-    /// Closes one end of a link, and discards what it learnt over the link.
+    /// Closes one end of a link, and discards what it learned over the link.
     pub(crate) fn close_end(&mut self, link: usize, at_hub: bool) {
         let leaf = self.links[link].leaf;
         if at_hub {

@@ -297,7 +297,7 @@ impl State {
             .for_each(|key| self.take_token(leaf, key, false));
     }
 
-    /// Discards all that the hub learnt over a link.
+    /// Discards all that the hub learned over a link.
     pub(crate) fn forget(&mut self, link: usize) {
         let hub = self.links[link].hub;
         let known = std::mem::take(&mut self.links[link].known);

@@ -80,7 +80,7 @@ impl Runtime for SimulatedRuntime {
             return System.open_hub(net, game, scenario);
         }
         let refused = |reason| BusError::Open {
-            what: format!("to listen on {}", net.listen.join(", ")),
+            what: format!("listen on {}", net.listen.join(", ")),
             reason,
         };
         Ok(Arc::new(SimulatedSession::hub(net).map_err(refused)?))
@@ -91,7 +91,7 @@ impl Runtime for SimulatedRuntime {
             return System.open_leaf(net);
         }
         let refused = |reason| BusError::Open {
-            what: format!("to connect to {}", net.connect.join(", ")),
+            what: format!("connect to {}", net.connect.join(", ")),
             reason,
         };
         Ok(Arc::new(SimulatedSession::leaf(net).map_err(refused)?))

@@ -81,7 +81,7 @@ impl SimulatedSession {
         if hub.is_none() {
             session.close();
             wait_until(0, session.world.now().checked_add(CONNECT));
-            return Err("nobody listens there".to_owned());
+            return Err("nothing is listening there".to_owned());
         }
         Ok(session)
     }
@@ -116,7 +116,7 @@ impl SimulatedSession {
 
     /// Adds a declaration that lasts as long as the session. Returns its number.
     fn insert(&self, key: String, what: What) -> u64 {
-        // A closed session takes no declaration; dropping one may use the network.
+        // A closed session accepts no declaration; dropping one may use the network.
         let (id, _refused) = self.world.visit(|state| {
             state.number += 1;
             let id = state.number;

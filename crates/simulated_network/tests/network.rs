@@ -76,7 +76,7 @@ fn add_hub(network: &SimulatedNetwork, time: Duration, log: &Log) -> usize {
 /// A leaf that shows a token and publishes a number every `every`.
 fn add_leaf(network: &SimulatedNetwork, numbers: u32, every: Duration) -> usize {
     network.node(Duration::from_millis(1), "leaf", move || {
-        let bus = Bus::leaf(&net()).expect("the hub is there");
+        let bus = Bus::leaf(&net()).expect("the hub is up");
         let _token = bus.show_alive(TOKEN.to_owned()).expect("open");
         let publisher = bus
             .publisher(KEY.to_owned(), Priority::Normal)
@@ -187,7 +187,7 @@ fn a_short_cut_delays_and_a_long_one_takes_the_token_until_the_link_is_back() {
             && left_s > 40.0,
         "{tokens:?}"
     );
-    assert!(numbers_of(&long).len() < 300, "what was under way is lost");
+    assert!(numbers_of(&long).len() < 300, "what was in transit is lost");
 }
 
 #[test]

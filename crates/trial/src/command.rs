@@ -9,7 +9,7 @@ pub enum Command {
     /// Thrusters off.
     #[default]
     Hold,
-    /// Each thruster's share of full ahead (1) or full astern (−1).
+    /// Each thruster's fraction of full ahead (1) or full astern (−1).
     Thrust {
         /// Port thruster.
         port: f64,
@@ -124,7 +124,7 @@ impl Engine {
         }
     }
 
-    /// The mean throttle of `TrialBoat::settings`, as a share of full.
+    /// The mean throttle of `TrialBoat::settings`, as a fraction of full.
     pub(crate) fn throttle(&self, settings: [f64; 2]) -> f64 {
         match self {
             Engine::Thrusters(model, _) => {
@@ -189,7 +189,7 @@ impl Engine {
     }
 }
 
-/// Converts a number in a thruster's column to a share of full ahead or astern.
+/// Converts a number in a thruster's column to a fraction of full ahead or astern.
 fn share(model: &ThrusterModel, thruster: &Thruster, pair: Pair, number: f64) -> f64 {
     let setting = match (pair, &thruster.curve) {
         (Pair::Pct, ThrustCurve::Propeller(_)) => return number / 100.0,

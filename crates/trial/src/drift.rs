@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn in_a_steady_wind_a_boat_drifts_beam_on_as_the_balance_of_forces_says() {
-        /// Remaining transient after 150 s, as a share of the speed.
+        /// Remaining transient after 150 s, as a fraction of the speed.
         const TOLERANCE: f64 = 0.005;
         let boats = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/boats");
         let tick = SimTime::from_s(0.05);

@@ -17,20 +17,19 @@ use strum::{EnumString, IntoStaticStr, VariantNames};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
 #[strum(serialize_all = "snake_case")]
 pub enum Manoeuvre {
-    /// From a straight approach the inner thruster stops and the outer one stays (full rudder,
-    /// thrust stays), for two turns.
+    /// From a straight approach, the inner thruster stops and the outer one is unchanged (kinematic: full rudder,
+    /// thrust unchanged), for two turns.
     TurningCircle,
-    /// From a straight approach the thrusters are set apart by a share of full (the rudder is set),
-    /// to starboard; each time the heading passes the angle on the side it turns to, to the other
-    /// side.
+    /// From a straight approach, differential thrust (kinematic: rudder) is applied to starboard; each time the heading
+    /// passes the angle on that side, it is reversed.
     Zigzag,
-    /// From a straight approach full astern, until the boat is dead in the water (which may drift).
+    /// From a straight approach, full astern until the boat is dead in the water (which may itself drift).
     CrashStop,
     /// Full ahead from rest, until the speed is steady.
     Acceleration,
     /// No thrust, in whatever sea there is.
     Drift,
-    /// From rest port full ahead and starboard full astern (thrust 50 and full rudder).
+    /// From rest, port full ahead and starboard full astern (kinematic: thrust 50 and full rudder).
     Spin,
 }
 
@@ -59,7 +58,7 @@ pub struct Plan {
     pub side: f64,
     /// The heading at which a zigzag switches, rad.
     pub switch_rad: f64,
-    /// The difference between the thrusters in a zigzag, or its rudder angle, as a share of full.
+    /// The difference between the thrusters in a zigzag, or its rudder angle, as a fraction of full.
     pub differential: f64,
     /// The duration, s; `None`: until the manoeuvre is over.
     pub duration_s: Option<f64>,
@@ -85,9 +84,9 @@ const DRIFT_S: f64 = 300.0;
 const SPIN_S: f64 = 60.0;
 /// A zigzag is over after this many switches.
 const SWITCHES: usize = 7;
-/// A boat below this share of the approach speed counts as dead in the water.
+/// A boat below this fraction of the approach speed counts as dead in the water.
 pub(super) const DEAD: f64 = 0.01;
-/// The speed is steady when it changes by less than this share in [`STEADY_S`].
+/// The speed is steady when it changes by less than this fraction in [`STEADY_S`].
 const STEADY: f64 = 0.001;
 const STEADY_S: f64 = 10.0;
 
@@ -95,12 +94,12 @@ const STEADY_S: f64 = 10.0;
 #[derive(Clone, Copy, Debug)]
 struct Helm {
     is_kinematic: bool,
-    /// Mean throttle at the end of the approach, as a share of full.
+    /// Mean throttle at the end of the approach, as a fraction of full.
     throttle: f64,
 }
 
 impl Helm {
-    /// Thrusters at these shares, or half their sum as thrust and half their difference as rudder.
+    /// Thrusters at these fractions, or half their sum as thrust and half their difference as rudder.
     fn apart(self, port: f64, starboard: f64) -> Command {
         if self.is_kinematic {
             return Command::Impose {
@@ -187,7 +186,7 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
     }
 }
 
-/// The straight approach. Returns the speed at its end, m/s, and the throttle as a share of full.
+/// The straight approach. Returns the speed at its end, m/s, and the throttle as a fraction of full.
 fn approach(
     boat: &Boat,
     trial_boat: &mut TrialBoat,

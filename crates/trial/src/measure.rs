@@ -61,7 +61,7 @@ fn mean(samples: &[Sample], of: impl Fn(&Sample) -> f64) -> f64 {
 }
 
 /// Advance, transfer and tactical diameter as in MSC.137(76): at a heading change of 90° and 180°,
-/// of midships, from where the thrusters were set. Steady values are means over the last whole
+/// of midships, from the position where the thrusters were set. Steady values are means over the last whole
 /// turn.
 fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
@@ -223,7 +223,7 @@ fn drift(sailed: &Sailed) -> Vec<Measure> {
     vec![
         measure("drift speed", drift.speed_m_s(), "m/s"),
         measure(
-            "drift toward",
+            "drift direction",
             drift.toward_rad().map_or(f64::NAN, compass_deg_from_rad),
             "°",
         ),

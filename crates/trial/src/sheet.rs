@@ -1,7 +1,7 @@
 //! A table from users: a line of names, then numbers. Errors give file, line and column.
 //!
-//! Reads what loggers and spreadsheets write: columns separated by commas, semicolons or tabs,
-//! decimal commas, UTF-16, a line of units, and a last line that a power loss cut off.
+//! Reads the output of loggers and spreadsheets: columns separated by commas, semicolons or tabs, decimal commas,
+//! UTF-16, a line of units, and a last line truncated by a power loss.
 
 use primitives::input_file::utf_8;
 use std::io::Read;
@@ -57,7 +57,7 @@ impl Sheet {
             return Err(whole(format!("longer than {BYTES_MAX} bytes")));
         }
         let mut bytes = utf_8(bytes).map_err(&whole)?;
-        // A logger that loses its power cuts its last line off.
+        // A logger that loses power truncates its last line.
         let is_cut = !bytes.ends_with(b"\n");
         // The reader turns a final comment into a row unless its line ends.
         bytes.push(b'\n');
@@ -90,7 +90,9 @@ impl Sheet {
         };
         for (i, head) in sheet.heads.iter().enumerate() {
             if !head.is_empty() && sheet.heads[..i].contains(head) {
-                return Err(sheet.mistake(Some(1), format!("two columns {head}, expected one")));
+                return Err(
+                    sheet.mistake(Some(1), format!("two columns named {head}, expected one"))
+                );
             }
         }
         let mut is_first = true;
@@ -113,7 +115,7 @@ impl Sheet {
                 let wanted = sheet.heads.len();
                 if is_cut && found < wanted && !sheet.rows.is_empty() && records.peek().is_none() {
                     let note = format!(
-                        "{found} of {wanted} columns in the last line, which is cut off and ignored"
+                        "{found} of {wanted} columns in the last line, which is truncated and ignored"
                     );
                     sheet.notes.push(sheet.mistake(Some(line), note));
                     break;
@@ -157,7 +159,7 @@ impl Sheet {
         MISSING.contains(&self.text(row, column).to_lowercase().as_str())
     }
 
-    /// Whether a row, the first, has the units of the columns. Its cells repeat the ends of their
+    /// Whether a row (the first) contains the units of the columns. Its cells repeat the ends of their
     /// names, or are empty.
     fn are_units(&self, record: &csv::StringRecord, line: u64) -> Result<bool, Mistake> {
         let is_word = |cell: &str| {
@@ -249,7 +251,10 @@ impl Sheet {
         let missing = || {
             self.mistake(
                 Some(1),
-                format!("no column t_s among {}", self.heads.join(", ")),
+                format!(
+                    "missing column t_s; columns found: {}",
+                    self.heads.join(", ")
+                ),
             )
         };
         let column = self.column("t_s").ok_or_else(missing)?;
@@ -266,7 +271,7 @@ impl Sheet {
             if let Some(before_s) = times_s.last().filter(|before_s| since_s <= **before_s) {
                 let before_s = before_s + start_s;
                 let message = format!(
-                    "t_s is {t_s}, expected more than {before_s}, its value in the row before"
+                    "t_s is {t_s}, expected more than {before_s}, its value in the previous row"
                 );
                 return Err(self.mistake(Some(self.rows[row].0), message));
             }
@@ -276,8 +281,8 @@ impl Sheet {
     }
 }
 
-/// The line of a record. The reader returns the end of the previous one, after which blank lines
-/// and comments may follow.
+/// The line of a record. The reader returns the end of the previous record, which may be followed by blank lines and
+/// comments.
 fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
     let lines = rest
@@ -304,7 +309,7 @@ fn separator(bytes: &[u8]) -> u8 {
             .filter(|byte| **byte == separator)
             .count()
     };
-    // The last one of equally common ones counts.
+    // Of equally common separators, the last one is used.
     [b'\t', b';', b',']
         .into_iter()
         .max_by_key(|separator| count(*separator))
@@ -386,7 +391,7 @@ mod tests {
         for (text, want) in [
             ("", "in.csv: no rows"),
             ("t_s,a\n", "in.csv: no rows"),
-            ("t_s,t_s\n0,1\n", "in.csv:1: two columns t_s"),
+            ("t_s,t_s\n0,1\n", "in.csv:1: two columns named t_s"),
             ("t_s,a\n0,1\n1\n", "in.csv:3: 1 columns, expected 2"),
             ("t_s,a\n0,1\n \n1,2,3\n", "in.csv:4: 3 columns, expected 2"),
             (
@@ -402,7 +407,10 @@ mod tests {
                 "t_s,speed_m_s\ns,kn\n0,1\n",
                 "in.csv:2: speed_m_s has the unit kn, expected that of its name",
             ),
-            ("x,a\n0,1\n", "in.csv:1: no column t_s among x, a"),
+            (
+                "x,a\n0,1\n",
+                "in.csv:1: missing column t_s; columns found: x, a",
+            ),
             (
                 "t_s,a\n0,1\nnan,1\n",
                 "in.csv:3: t_s is nan, expected 0 to 100",
@@ -421,7 +429,7 @@ mod tests {
             ),
             (
                 "t_s,a\n0,1\n2,1\n2,3\n",
-                "in.csv:4: t_s is 2, expected more than 2, its value in the row before",
+                "in.csv:4: t_s is 2, expected more than 2, its value in the previous row",
             ),
         ] {
             let error = sheet(text)
@@ -476,7 +484,7 @@ mod tests {
         let notes: Vec<String> = cut.notes().iter().map(ToString::to_string).collect();
         assert_eq!(
             notes,
-            ["in.csv:3: 1 of 2 columns in the last line, which is cut off and ignored"]
+            ["in.csv:3: 1 of 2 columns in the last line, which is truncated and ignored"]
         );
     }
 

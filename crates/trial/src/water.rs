@@ -35,7 +35,7 @@ pub fn set_mean_current(sea: &mut Sea, speed_m_s: f64, toward_deg: f64) {
     };
 }
 
-/// A field without walls or obstacles round the datum.
+/// A field without walls or obstacles around the datum.
 pub fn open_field() -> Field {
     Field::new(Plan {
         name: "open_water".into(),

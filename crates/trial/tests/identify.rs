@@ -1,5 +1,4 @@
-//! Identification recovers known parameters from noisy data and detects logs that do not determine
-//! them.
+//! Identification recovers known parameters from noisy data, and detects logs that do not determine them.
 
 use primitives::SimTime;
 use primitives::stream::Stream;
@@ -36,7 +35,7 @@ fn wrong(truth: &Boat) -> Boat {
     boat
 }
 
-/// Commands for four minutes, each for some seconds, with both thrusters equal or different.
+/// Commands for four minutes, each for a few seconds, with both thrusters equal or different.
 fn orders_csv(stream: &mut Stream) -> String {
     let mut text = "t_s,port_pct,starboard_pct\n".to_owned();
     let mut t_s = 0.0;
@@ -70,7 +69,7 @@ fn log_csv(boat: &Boat, orders_csv: &str, noise: f64, stream: &mut Stream) -> St
         };
     }
     let mut text = vec![];
-    trial::write_csv(&samples, true, &mut text).expect("a vector takes everything");
+    trial::write_csv(&samples, true, &mut text).expect("writing to a vector cannot fail");
     String::from_utf8(text).expect("text")
 }
 
@@ -137,7 +136,7 @@ fn known_parameters_come_back_within_their_stated_confidence() {
             fit.qualities
         );
     }
-    // 95 % of 36 is 34; fewer than 31 would have a probability of one in a hundred.
+    // 95 % of 36 is 34; fewer than 31 would occur with a probability of one in a hundred.
     assert!(within >= 31, "{within} of {all} within their 95 %");
 }
 
@@ -192,7 +191,7 @@ fn a_log_that_lacks_columns_is_refused() {
         (
             "t_s,port_pct,starboard_pct",
             "0,0",
-            "log.csv:1: no column heading_deg",
+            "log.csv:1: missing column heading_deg",
         ),
         (
             "t_s,heading_deg,surge_m_s,yaw_rate_deg_s",

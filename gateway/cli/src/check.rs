@@ -47,7 +47,7 @@ pub struct Args {
     /// conservative limits]
     #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
-    /// Guides you through a compass swing and a propeller test by remote control; asks before each
+    /// Guides you through a compass swing and a propeller test by remote control; asks before each step
     #[arg(long, requires = "vehicle")]
     guided: bool,
     /// Writes the report to this JSON file, and a text copy to a .txt file beside it [default:
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         .for_s
         .unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
     let sends = if gateway.protocol == BoatProtocol::Mavlink {
-        "nothing but requests for telemetry"
+        "only requests for telemetry"
     } else {
         "nothing"
     };
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if check.received.is_empty() {
         let reason = listener.reason.clone().unwrap_or_else(|| check.unread());
         bail!(
-            "received nothing readable from {address} within {for_s} s: {reason} ({})",
+            "no valid sentences from {address} within {for_s} s: {reason} ({})",
             counted(check)
         );
     }
@@ -189,7 +189,7 @@ pub(super) struct Listener {
     events: Receiver<LinkEvent>,
     start: Instant,
     stop: Arc<AtomicBool>,
-    /// Why the boat cannot be reached, while that is so.
+    /// Why the boat cannot be reached, while it cannot.
     reason: Option<String>,
     /// Message printed when it connects.
     hello: String,

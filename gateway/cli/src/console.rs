@@ -218,7 +218,7 @@ impl Console {
                 Ok(OperatorReply {
                     refused: Some(reason),
                     ..
-                }) => terminal::complain(&format!("{name} refuses: {reason}")),
+                }) => terminal::complain(&format!("refused by {name}: {reason}")),
                 Err(e) => {
                     terminal::complain(&format!("{name}: {}", command_line::explain::line(&e)))
                 }
@@ -270,7 +270,7 @@ impl Console {
                     session = None;
                 }
                 Err(missing) => {
-                    // A permanent error may still end when something replaces the game.
+                    // Even a permanent error may end when another game replaces this one.
                     let reason = missing.to_string();
                     if reason != said {
                         terminal::remark(&format!("no game: {reason}"));
@@ -311,7 +311,7 @@ impl Console {
         let given = self.leaf.access.token().ok().flatten();
         for entry in self.leaf.local_gateways(true) {
             let token = given.clone().or_else(|| entry.token?.parse().ok());
-            // On failure the next round retries.
+            // On failure, the next round retries.
             drop(
                 self.client
                     .add_gateway(entry.control, Some(&entry.vehicle), token),
@@ -377,11 +377,11 @@ fn boats_text(orders: &StopOrders, now: Instant) -> String {
                     if boat.is_silent { "silent" } else { state }
                 )
             }
-            _ => format!("{name}  not heard yet\n"),
+            _ => format!("{name}  no report yet\n"),
         });
     let text: String = boats.collect();
     if text.is_empty() {
-        "no boat is known yet\n".to_owned()
+        "no boats known yet\n".to_owned()
     } else {
         text
     }

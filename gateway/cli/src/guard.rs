@@ -1,4 +1,4 @@
-//! `gateway guard`: the process that stops the boat when its gateway cannot. The gateway starts it.
+//! `gateway guard`: the process that stops the boat if its gateway cannot. The gateway starts it.
 
 use anyhow::{Context, Result};
 use command_line::{program, terminal};

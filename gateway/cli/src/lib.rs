@@ -1,4 +1,4 @@
-//! The commands of the boat's program: run a real boat in a game, check it, stop and command it.
+//! The commands of the boat's program: connect a real boat to a game, check it, stop it and command it.
 //!
 //! `squall gateway` has the same commands. Open `surveyor.rs` first: it drives a boat.
 
@@ -47,7 +47,7 @@ pub enum Command {
     Stop(stop_boat::Args),
     /// Sends an operator command to a boat's gateway, such as arm, disarm, estop or release.
     Tell(tell::Args),
-    /// Operates boats from a prompt, over open connections so that stops are fast.
+    /// Operates boats from a prompt, over connections that stay open so that stops are fast.
     Console(console::Args),
     /// Stops the boat when its gateway is killed or hangs; started by the gateway.
     #[command(hide = true)]

@@ -33,7 +33,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         replay.bytes_out
     ));
     let Some(difference) = replay.difference else {
-        terminal::print("the replay equals the recording, byte for byte\n");
+        terminal::print("the replay is identical to the recording, byte for byte\n");
         return Ok(ExitCode::SUCCESS);
     };
     terminal::print(&format!(

@@ -42,7 +42,7 @@ pub struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let address = args.link.clone();
-    // A gateway that holds the link would drive its boat on.
+    // A gateway that holds the link would keep driving its boat.
     if stopped_by_its_gateway(&address) {
         return Ok(ExitCode::SUCCESS);
     }
@@ -134,21 +134,21 @@ fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
     match ask_gateway(entry.control, None, &command, ANSWER) {
         Ok(reply) if reply.refused.is_none() && reply.status.link == "up" => {
             terminal::print(&format!(
-                "the gateway of {} has the link: {}\n",
+                "the gateway of {} holds the link: {}\n",
                 entry.vehicle, reply.status.state
             ));
             true
         }
         Ok(reply) => {
             terminal::remark(&format!(
-                "the gateway of {} has the link and is {}",
+                "the gateway of {} holds the link and is {}",
                 entry.vehicle, reply.status.link
             ));
             false
         }
         Err(e) => {
             terminal::remark(&format!(
-                "the gateway of {} has the link, but does not answer: {e}",
+                "the gateway of {} holds the link but does not respond: {e}",
                 entry.vehicle
             ));
             false

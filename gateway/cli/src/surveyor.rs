@@ -43,7 +43,7 @@ pub struct Args {
     /// Arms once, as soon as the boat is ready; after a failsafe, an operator must arm it
     #[arg(long)]
     arm: bool,
-    /// Runs as on the water, but sends the boat only standby commands
+    /// Runs as it would on the water, but sends the boat only standby commands
     #[arg(long)]
     dry_run: bool,
     /// Report of a passed `gateway check --vehicle`, needed to arm if the gateway file requires it
@@ -61,15 +61,15 @@ pub struct Args {
     /// Runs at the pace of the game; only for an emulated boat
     #[arg(long)]
     at_game_pace: bool,
-    /// How long the boat may send nothing before it counts as lost, s
+    /// How long the boat may send nothing before it is treated as lost, s
     #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
     silence_s: f64,
-    /// How long to look for the game, s; operators can connect meanwhile [default: no limit]
+    /// How long to look for the game, s; operators can connect in the meantime [default: no limit]
     #[arg(long, value_name = "S", value_parser = seconds)]
     wait_s: Option<f64>,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Prints only errors, and stops when standard input ends
+    /// Prints only errors, and exits when standard input closes
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -174,7 +174,7 @@ fn announce(entry: &GatewayEntry, for_parent: bool, log: &Log) -> Option<Registr
     registered.ok()
 }
 
-/// Parses the address of the control port, which other machines must be able to use.
+/// Parses the address of the control port, which must be usable from other machines.
 fn control_address(text: &str) -> Result<SocketAddr, String> {
     let address = address(text)?;
     if address.ip().is_unspecified() {

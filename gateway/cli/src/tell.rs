@@ -1,7 +1,7 @@
 //! `gateway tell`: sends an operator command to a boat's gateway.
 //!
 //! Stop commands take every path at once. Other commands go straight to the gateway's control port
-//! if it is known, and otherwise over the game's network. Those for all boats go both ways.
+//! if it is known, and otherwise over the game's network. Commands for all boats take both routes.
 
 use super::log_line::full;
 use super::mission_file;
@@ -107,7 +107,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     terminal::show(&full(&reply.status));
     match reply.refused {
         None => Ok(ExitCode::SUCCESS),
-        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.words.vehicle)),
+        Some(reason) => Err(anyhow!("refused by {}: {reason}", args.words.vehicle)),
     }
 }
 
@@ -235,7 +235,7 @@ fn ask(
     command: &OperatorCommand,
 ) -> Result<OperatorReply> {
     let answer = bus.request_node(&topic::operate(game, vehicle), command, bus::ANSWER)?;
-    answer.with_context(|| format!("no gateway of {vehicle} answers"))
+    answer.with_context(|| format!("no gateway of {vehicle} is responding"))
 }
 
 /// Sends a command to a boat: to its control port if that is among `ports`, otherwise over the
@@ -267,7 +267,7 @@ pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec
             Ok(OperatorReply {
                 refused: Some(reason),
                 status,
-            }) => Some(format!("{} refuses: {reason}", status.vehicle)),
+            }) => Some(format!("refused by {}: {reason}", status.vehicle)),
             Ok(_) => None,
             Err(e) => Some(e.to_string()),
         };
@@ -341,7 +341,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     match (left.is_empty(), no_game.get()) {
         (true, None) if client.visit(|orders| orders.is_done(clock::now())) => {}
         (true, None) => terminal::remark(
-            "the game does not answer; only the known gateways received the command",
+            "the game does not respond; only the known gateways received the command",
         ),
         (true, Some(reason)) => terminal::remark(&format!(
             "only gateways received the command, not the game: {reason}"
@@ -436,12 +436,12 @@ fn tell_all(args: &Args) -> Result<ExitCode> {
                 failed.extend(
                     reply
                         .refused
-                        .map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)),
+                        .map(|reason| format!("refused by {}: {reason}", reply.status.vehicle)),
                 );
             }
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => {
-                failed.push("not all boats answered".to_owned());
+                failed.push("not all boats responded".to_owned());
                 break;
             }
         }
@@ -468,7 +468,7 @@ fn tell_game(
     known: &[String],
     outcomes: &Sender<Outcome>,
 ) {
-    // Ignore the error: after the timeout nobody listens.
+    // Ignore the error: after the timeout, no one is listening.
     let say = |outcome| drop(outcomes.send(outcome));
     let observer = match Observer::connect(leaf) {
         Ok(observer) => observer,

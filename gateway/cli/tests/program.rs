@@ -2,7 +2,7 @@
 
 #![allow(
     clippy::disallowed_methods,
-    reason = "processes are waited for by the clock, with a limit"
+    reason = "waits for processes by the clock, with a limit"
 )]
 
 use bus::Token;
@@ -73,7 +73,7 @@ impl Folder {
         while !said.contains(what) {
             assert!(
                 start.elapsed() < LIMIT,
-                "{args:?} does not say {what:?}: {said}"
+                "{args:?} does not print {what:?}: {said}"
             );
             said = self.run(args).1;
         }
@@ -90,7 +90,7 @@ impl Drop for Running {
     }
 }
 
-/// A boat's end of a link: reports standby and records what it receives.
+/// A boat's end of a link, which reports standby and records what it receives.
 struct Boat {
     link: Arc<Link>,
     received: Receiver<String>,
@@ -137,7 +137,10 @@ impl Boat {
         let start = Instant::now();
         let mut text = String::new();
         while !text.contains(what) {
-            assert!(start.elapsed() < LIMIT, "{what:?} does not come: {text:?}");
+            assert!(
+                start.elapsed() < LIMIT,
+                "{what:?} does not arrive: {text:?}"
+            );
             text.extend(self.received.recv_timeout(Duration::from_millis(100)));
         }
     }
@@ -256,7 +259,7 @@ fn a_full_disk_is_reported_at_once_and_at_the_end() {
     );
 }
 
-/// A GGA of this moment.
+/// A GGA sentence for this moment.
 fn gga() -> Vec<u8> {
     let Sentence::Gga(blank) = Sentence::parse("GPGGA,,,,,,").expect("it is blank") else {
         panic!("no GGA")
@@ -334,14 +337,15 @@ fn a_gateway_serves_operators_and_its_recording_is_replayed_and_its_guard_stops_
     );
     let (output, said) = folder.run(&["stop", &boat.link.reach()]);
     assert!(
-        output.status.success() && said.contains("has the link: e-stopped"),
+        output.status.success() && said.contains("holds the link: e-stopped"),
         "{said}"
     );
     drop(gateway.0.stdin.take());
     assert!(gateway.0.wait().expect("it ends").success());
     let (output, said) = folder.run(&["replay", "run.mcap"]);
     assert!(
-        output.status.success() && said.contains("the replay equals the recording, byte for byte"),
+        output.status.success()
+            && said.contains("the replay is identical to the recording, byte for byte"),
         "{said}"
     );
 

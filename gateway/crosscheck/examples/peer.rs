@@ -1,7 +1,7 @@
 //! Our codec as a peer of `pynmea2_check.py`: `peer write` writes sentences of every kind with
 //! their values, `peer read` prints the values that it reads in the lines of its input.
 //!
-//! The values of a sentence are a line of `name=value`, tab-separated, as `Debug` prints them.
+//! The values of a sentence form a line of tab-separated `name=value` pairs, as `Debug` prints them.
 
 #[allow(dead_code, reason = "the tests of the codec use more of it")]
 #[path = "../../tests/nmea/sentences.rs"]
@@ -50,7 +50,7 @@ fn write() {
     for _ in 0..COUNT {
         let sentence = sentences
             .new_tree(&mut runner)
-            .expect("most are no download")
+            .expect("most are not downloads")
             .current();
         writeln!(out, "{}\t{}", sentence.line().trim_end(), values(&sentence))
             .expect("standard output is open");
@@ -60,7 +60,7 @@ fn write() {
 fn read() {
     let mut framer = Framer::new();
     for line in std::io::stdin().lock().lines() {
-        let line = line.expect("lines of text come in") + "\r\n";
+        let line = line.expect("the input is lines of text") + "\r\n";
         let mut answer = "not a sentence".to_owned();
         framer.push(line.as_bytes(), &mut |body| {
             answer = Sentence::parse(body)

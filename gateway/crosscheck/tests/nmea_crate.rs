@@ -1,7 +1,7 @@
 //! The nmea crate reads what we write, and we read what it reads, with the same values.
 //!
-//! It has no writer. The sentences of the second test are therefore put together here, in the ways
-//! in which devices differ: zeros before numbers, more or fewer decimals, fields that are empty.
+//! It has no writer. The sentences of the second test are therefore assembled here, with the variations found among
+//! devices: leading zeros, more or fewer decimal places, and empty fields.
 
 #[allow(dead_code, reason = "the tests of the codec use more of it")]
 #[path = "../../tests/nmea/sentences.rs"]
@@ -16,8 +16,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use sentences::{Domain, on_the_globe, standard_sentences};
 
-/// Half of the last digit that we write, and a little: the crate computes most numbers in single
-/// precision.
+/// Half of the last digit that we write, plus a little: the crate computes most numbers in single precision.
 const TENTH: f64 = 0.0501;
 const HUNDREDTH: f64 = 0.00502;
 const POSITION_DEG: f64 = 0.000_005_01 / 60.0;
@@ -112,13 +111,13 @@ fn agree(ours: &Sentence, theirs: &ParseResult) {
             same_time(a.time, b.utc_time);
             same_date(a.date, b.utc_date());
         }
-        (ours, theirs) => panic!("{ours:?} here is {theirs:?} there"),
+        (ours, theirs) => panic!("{ours:?} here but {theirs:?} there"),
     }
 }
 
 /// The crate's interpretation of a line.
 fn theirs(line: &str) -> ParseResult {
-    nmea::parse_str(line.trim_end()).unwrap_or_else(|e| panic!("the crate refuses {line}: {e:?}"))
+    nmea::parse_str(line.trim_end()).unwrap_or_else(|e| panic!("the crate rejects {line}: {e:?}"))
 }
 
 /// Our interpretation of a line.
@@ -127,10 +126,10 @@ fn ours(line: &str) -> Sentence {
     Framer::new().push(line.as_bytes(), &mut |body| {
         found.push(Sentence::parse(body))
     });
-    assert_eq!(found.len(), 1, "{line} is one sentence");
+    assert_eq!(found.len(), 1, "{line} is a single sentence");
     found
         .remove(0)
-        .unwrap_or_else(|e| panic!("we refuse {line}: {e}"))
+        .unwrap_or_else(|e| panic!("we reject {line}: {e}"))
 }
 
 /// Sentences that the crate reads: it has no magnetic heading, and needs some of the numbers.
@@ -141,7 +140,7 @@ fn sentence() -> impl Strategy<Value = Sentence> {
         signed: (-99.0..999.0).boxed(),
         texts: "".boxed(),
         places: on_the_globe(),
-        // The crate takes 80 to 82 for this century.
+        // The crate takes the years 80 to 82 to be in this century.
         years: 1983..2080,
         day_ms: 0..86_400_000,
     };

@@ -14,7 +14,7 @@ const ORDERED_MIN_PCT: f64 = 20.0;
 /// Index order of sides: port comes first everywhere.
 const SIDES: [&str; 2] = ["port", "starboard"];
 
-/// From this roll or pitch on a boat may have capsized, degrees: waves do not hold it there ...
+/// Roll or pitch from which a boat may have capsized, degrees: waves do not hold it there ...
 const TILT_MAX_DEG: f64 = 60.0;
 /// ... for this long, s.
 const TILT_S: f64 = 3.0;
@@ -29,8 +29,8 @@ struct Alarm {
 }
 
 impl Alarm {
-    /// Notes the size of the fault, if there is one now. Returns a warning with this text when it
-    /// has lasted for `debounce_s`, and a remark with its name at its end.
+    /// Records the size of the current fault, if any. Returns a warning with this text when it has lasted for
+    /// `debounce_s`, and a remark with its name when it ends.
     fn note(
         &mut self,
         now: SimTime,
@@ -46,7 +46,7 @@ impl Alarm {
             .is_some_and(|(since, _)| (now - since).as_s() >= debounce_s);
         match (std::mem::replace(&mut self.is_told, lasts), self.since) {
             (false, Some((_, size))) if lasts => Some(Event::Warning(text(size))),
-            // The end is a remark: nobody has to act on it.
+            // The end is only a remark: it requires no action.
             (true, None) => Some(Event::Remark(format!("over: {name}"))),
             _ => None,
         }
@@ -72,7 +72,7 @@ impl Wrong {
     /// Text for operators: the fault on a side, and its meaning.
     fn words(self) -> [&'static str; 2] {
         match self {
-            Wrong::Bilge => ["bilge pump runs", "the boat is taking on water"],
+            Wrong::Bilge => ["bilge pump is running", "the boat is taking on water"],
             Wrong::TooMuch => ["thruster draws too much", "the propeller may be fouled"],
             Wrong::TooLittle => ["thruster draws no current", "it may be off or broken"],
         }

@@ -84,7 +84,7 @@ impl ControlLog {
     /// Why we do not command the boat now, according to its reports.
     pub(super) fn fault(&self, now: SimTime) -> Option<ControlFault> {
         // Some boats report no operator. Their owner can declare in the file that the gateway
-        // commands them; otherwise silence means that somebody else may.
+        // commands them; otherwise silence means that someone else may command it.
         let silent = (!self.watch.assumed).then_some(ControlFault::Unknown);
         let Some((at, report)) = self.reported else {
             return silent;
@@ -97,8 +97,8 @@ impl ControlLog {
             operator == Operator::Secondary
         });
         match (report.operator, self.mode_mismatch(now)) {
-            // Check foreign orders first: a boat with two masters also disobeys and looks deaf, and
-            // the operator must learn that there is another gateway.
+            // Check foreign orders first: a boat with two masters also disobeys and seems not to receive, and the
+            // operator must learn that there is another gateway.
             _ if is_ours && self.echo.is_foreign(now) => Some(ControlFault::ForeignOrders),
             (_, None) if is_ours && self.echo.is_deaf(now) => Some(ControlFault::Deaf),
             (_, Some(mode)) if is_ours => Some(ControlFault::Disobeyed(mode.letter())),

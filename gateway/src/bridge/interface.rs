@@ -99,7 +99,7 @@ pub enum Input {
     // take four times the space.
     #[serde(skip)]
     Bytes(Vec<u8>),
-    /// The sim has admitted the boat: earlier orders do not count.
+    /// The sim has admitted the boat: earlier orders are ignored.
     Joined,
     /// An order, and the time of the picture that it answers.
     // The picture's time, not the message's, makes an order fresh: a sim that repeats itself keeps
@@ -119,7 +119,7 @@ pub enum Input {
     Fleet(FleetCommand),
     /// A game was found that defines the boat's site.
     Site(Box<Site>),
-    /// The gateway did not run for this long, s; its guard may have stopped the boat.
+    /// The gateway was not running for this long, s; its guard may have stopped the boat.
     Hung(f64),
     /// Time has passed.
     Tick,
@@ -164,7 +164,7 @@ pub enum Event {
         /// The new state.
         to: String,
     },
-    /// Another boat came into the way (`true`) or left it (`false`).
+    /// Another boat came into the boat's path (`true`) or left it (`false`).
     Blocked(bool),
     /// A warning for the operator.
     Warning(String),

@@ -49,7 +49,7 @@ const GAP_MIN_S: f64 = 0.045;
 const TASK_AGAIN_S: f64 = 1.0;
 /// Interval between reports of invalid navigation, s.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
-/// How many failsafes the status keeps.
+/// Number of failsafes kept in the status.
 const FAILSAFES_MAX: usize = 32;
 
 /// The newest order, its time of arrival, and the time of the picture that it answers.
@@ -69,7 +69,7 @@ pub struct Bridge {
     on_site: Option<OnSite>,
     supervisor: Supervisor,
     link_up: bool,
-    /// How long the gateway did not run before this input, s.
+    /// How long the gateway was not running before this input, s.
     hung_s: Option<f64>,
     order: Option<CurrentOrder>,
     /// Whether the order has not been sent yet.
@@ -484,8 +484,8 @@ impl Bridge {
         } else {
             command
         };
-        // Thrust goes to zero before any command that is not our own set-point. What a Surveyor
-        // does with its last thrust when it leaves mode T is not published.
+        // Thrust goes to zero before any command that is not our own set-point. How a Surveyor treats its last thrust
+        // when it leaves mode T is not published.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
             self.protocol.write(now, Command::Zero, &mut out.bytes);

@@ -24,9 +24,8 @@ pub(super) struct Pack {
 }
 
 impl Pack {
-    /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats showed
-    /// 24.8 V with 15433 of 57741 left, which matches seven lithium cells at that charge if the
-    /// count is in mAh.
+    /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats reported 24.8 V with 15433
+    /// of 57741 left, which matches seven lithium cells at that charge if the count is in mAh.
     pub(super) const SURVEYOR: Pack = Pack {
         cells: 7.0,
         capacity_ah: 57.741,
@@ -179,7 +178,7 @@ mod tests {
         let first_v = battery.volts();
         while battery.left > 0.0 {
             s += 1.0;
-            assert!(s < 86_400.0, "it lasts for ever");
+            assert!(s < 86_400.0, "it lasts forever");
             assert!(battery.carry_out(SimTime::from_s(s), HALF) == HALF || battery.left == 0.0);
             joules += battery.volts() * battery.amps();
         }

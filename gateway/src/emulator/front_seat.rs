@@ -25,7 +25,7 @@ pub trait FrontSeat: Send {
     /// Updates the sensor measurements.
     fn observe(&mut self, _now: SimTime, _own: &OwnBoat) {}
 
-    /// Receives the boat's true motion, if it has sensors of its own.
+    /// Receives the boat's true motion, if it has its own sensors.
     fn observe_truth(&mut self, _now: SimTime, _truth: &VehicleTruth) {}
 
     /// The boat's order to its thrusters now.

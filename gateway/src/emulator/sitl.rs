@@ -17,7 +17,7 @@ use std::collections::VecDeque;
 
 /// Standard gravity, m/s², as in the firmware.
 const GRAVITY_M_S2: f64 = 9.80665;
-/// Limits of the steps per second that a firmware requests. It asks for 1200 by default. Coarser
+/// Limits of the steps per second that a firmware requests. The default is 1200. Coarser
 /// steps delay its loops so much that it finds its GPS receiver too slow.
 const RATE_MAX_HZ: u16 = 1200;
 const RATE_MIN_HZ: u16 = 50;
@@ -30,7 +30,7 @@ const SILENT_S: f64 = 1.0;
 
 /// Channels of the largest datagram.
 const CHANNELS: usize = 32;
-/// The datagram's first number, by its count of channels.
+/// The datagram's magic number, by its number of channels.
 const FORMATS: [(u16, usize); 2] = [(18_458, 16), (29_569, CHANNELS)];
 /// Bytes before the pulses: magic number, rate and step.
 const HEADER: usize = 8;
@@ -294,7 +294,7 @@ impl Sitl {
         }
         let moment = Moment::new(at, truth, before);
         self.moments.push_back(moment);
-        // What a slow firmware will skip is not kept either.
+        // Motion that a slow firmware will skip is not kept either.
         let skipped = at - SimTime::from_s(2.0 * LOST_S);
         let done = self.clock.map_or(at, |(now, _)| now.max(skipped));
         while self.moments.len() > 2 && self.moments[1].at <= done {

@@ -146,7 +146,7 @@ impl Coasting {
         thrust_m_s + (toward_m_s - thrust_m_s).clamp(-change, change)
     }
 
-    /// The path to rest from the boat on, in straight legs.
+    /// The path from the boat to rest, in straight legs.
     pub(super) fn path(&self, glide: &Glide) -> Vec<Leg> {
         let Glide {
             water_m_s,

@@ -74,8 +74,8 @@ impl GeofenceWatch {
         }
     }
 
-    /// Notes that the boat receives a set-point of this steady speed ahead, m/s, at this heading
-    /// and velocity over the ground.
+    /// Records that the boat receives a set-point of this steady speed ahead, m/s, at this heading and velocity over
+    /// the ground.
     pub fn note_order(&mut self, now: SimTime, ahead_m_s: f64, motion: (f64, Ned)) {
         if let Some(coasting) = &self.coasting {
             self.drift.observe(coasting, now, ahead_m_s, motion);
@@ -140,7 +140,7 @@ impl GeofenceWatch {
         };
         let mut paths = vec![coasting.path(&still)];
         if coast_m.is_empty() {
-            // Measured values beat assumptions.
+            // Measured values take precedence over assumptions.
             paths.push(vec![braked]);
         }
         paths

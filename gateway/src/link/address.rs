@@ -47,7 +47,7 @@ pub enum LinkAddress {
 pub enum Side {
     /// Connects to another program's port.
     Connects,
-    /// Opens a port of its own.
+    /// Opens its own port.
     Listens,
 }
 

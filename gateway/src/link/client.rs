@@ -21,8 +21,7 @@ use std::time::Duration;
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// How often an attempt is polled.
-// A blocking connect cannot be interrupted: a gateway asked to exit would wait for an address that
-// does not answer.
+// A blocking connect cannot be interrupted: a gateway asked to exit would wait for an unresponsive address.
 const POLL: Duration = Duration::from_millis(5);
 
 /// Maximum unacknowledged bytes of a TCP connection, and how long they may stay so before it counts
@@ -48,7 +47,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
             Err(e) => {
                 let wait = backoff.wait();
                 let took = clock::since(begun_at);
-                // An attempt that nobody answered has taken its wait already.
+                // An attempt without an answer has already taken its wait.
                 let retry_in = if took < wait / 2 {
                     wait
                 } else {
@@ -71,7 +70,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
 fn in_words(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::ConnectionRefused => {
-            "connection refused: nothing listens there; check the address and the port, and that the boat is on"
+            "connection refused: nothing is listening there; check the address and port, and that the boat is on"
                 .to_owned()
         }
         _ => error.to_string(),

@@ -135,7 +135,7 @@ impl Drop for Connection {
 fn write_on(peer: &Peer, threads: &Threads) {
     let mut settled_at = clock::now();
     while let Some(request) = peer.outbox.next() {
-        // Bytes that should have left long ago are waiting in a stalled line.
+        // Bytes that should have been sent long ago are waiting in a stalled line.
         if request.priority() != Priority::Normal && clock::since(settled_at) >= SETTLED {
             peer.port.discard_unsent();
         }

@@ -144,7 +144,7 @@ impl Port {
         !matches!(self, Port::Pty(_))
     }
 
-    /// Closes gracefully, so that written bytes still arrive.
+    /// Closes gracefully, so that bytes already written still arrive.
     pub(super) fn finish(&self) {
         let Port::Tcp(stream) = self else { return };
         // Closing a socket with unread bytes makes the system send a reset, which may overtake the

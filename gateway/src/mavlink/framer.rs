@@ -207,7 +207,7 @@ impl Framer {
         &self.counts
     }
 
-    /// Skips what begins like a frame of an unknown message; returns the number of bytes consumed,
+    /// Skips bytes that begin like a frame of an unknown message; returns the number of bytes consumed,
     /// 0 while undecided.
     fn pass_unknown(&mut self, layout: &Layout, bytes: &[u8]) -> usize {
         // A checksum includes a byte that only the message's definition contains, so it cannot be

@@ -9,13 +9,13 @@ const DAY_MS: u32 = 86_400_000;
 
 /// A time of day, UTC, in milliseconds since midnight.
 ///
-/// Written with two decimals, or three if the milliseconds need them. A leap second is 86 400 000
+/// Written to two decimal places, or three if the milliseconds need them. A leap second is 86 400 000
 /// to 86 400 999; larger values are written as an empty field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct TimeOfDay(pub u32);
 
 impl TimeOfDay {
-    /// Parses a field `hhmmss`, with or without decimals.
+    /// Parses a field `hhmmss`, with or without decimal places.
     pub(super) fn parse(text: &str) -> Option<TimeOfDay> {
         let (clock, decimals) = text.split_once('.').unwrap_or((text, "0"));
         let [hour, minute, second] = pairs(clock)?.map(u32::from);

@@ -7,7 +7,7 @@ use super::checksum;
 use serde::{Deserialize, Serialize};
 
 /// Maximum bytes of a sentence read, with `$` and CR LF. The standard says 82, but receivers that
-/// send minutes with seven decimals send GGA sentences of 88.
+/// send minutes with seven decimal places send GGA sentences of 88.
 pub const ACCEPTED_MAX: usize = 256;
 
 /// Maximum bytes between `$` and the line's end: body, `*` and two digits.

@@ -16,7 +16,7 @@ pub(super) struct Layout<'a> {
 
 /// One entry of a layout: a field, or several fields that form one value.
 pub(super) enum Field<'a> {
-    /// The address of a manufacturer's own sentence.
+    /// The address of a proprietary sentence.
     Address(&'static str),
     /// The address of a standard sentence: its talker and its kind.
     Standard(&'a mut Talker, &'static str),
@@ -32,12 +32,11 @@ pub(super) enum Field<'a> {
     Required(&'a mut f64, Format, &'static str),
     /// A number that is read but written as an empty field.
     ReadOnly(&'a mut Option<f64>),
-    /// Two fields: a magnitude with one decimal, and `E` for a positive or `W` for a negative
-    /// number.
+    /// Two fields: a magnitude to one decimal place, and `E` for a positive or `W` for a negative number.
     East(&'a mut Option<f64>),
-    /// An optional small whole number, zero-padded to this width.
+    /// An optional small integer, zero-padded to this width.
     Whole(&'a mut Option<u8>, usize),
-    /// A fix quality: an empty field is 0.
+    /// A fix quality: an empty field is read as 0.
     Quality(&'a mut u8),
     /// A waypoint number.
     Index(&'a mut u16),
@@ -55,11 +54,11 @@ pub(super) enum Field<'a> {
     Time(&'a mut Option<TimeOfDay>),
     /// An optional date `ddmmyy`.
     Date(&'a mut Option<Date>),
-    /// Three fields: day, month, year with four digits.
+    /// Three fields: day, month, four-digit year.
     DayMonthYear(&'a mut Option<Date>),
-    /// Four fields: an optional position, with this many decimals of minutes.
+    /// Four fields: an optional position, with this many decimal places of minutes.
     Position(&'a mut Option<LatLon>, u32),
-    /// Four fields: a required position, with this many decimals of minutes.
+    /// Four fields: a required position, with this many decimal places of minutes.
     Place(&'a mut LatLon, u32),
 }
 
@@ -69,30 +68,30 @@ pub(super) struct Format {
     pub(super) decimals: usize,
     /// Zero-padded to this width.
     pub(super) width: usize,
-    /// Whether it is normalised to 0 (inclusive) to 360 (exclusive).
+    /// Whether it is normalised to [0, 360).
     pub(super) compass: bool,
     /// Whether trailing zeros are omitted.
     pub(super) brief: bool,
 }
 
-/// Without decimals.
+/// Without decimal places.
 pub(super) const WHOLE: Format = Format {
     decimals: 0,
     width: 0,
     compass: false,
     brief: false,
 };
-/// With one decimal.
+/// To one decimal place.
 pub(super) const TENTHS: Format = Format {
     decimals: 1,
     ..WHOLE
 };
-/// With two decimals.
+/// To two decimal places.
 pub(super) const HUNDREDTHS: Format = Format {
     decimals: 2,
     ..WHOLE
 };
-/// With three decimals, without trailing zeros.
+/// To three decimal places, without trailing zeros.
 pub(super) const BRIEF_THOUSANDTHS: Format = Format {
     decimals: 3,
     brief: true,
@@ -131,7 +130,7 @@ impl Format {
     }
 }
 
-/// An angle normalised to 0 to 360, such that rounding to this many decimals does not make it 360.
+/// An angle normalised to [0, 360) so that it does not round up to 360 at this precision.
 fn compass_deg(angle_deg: f64, decimals: usize) -> f64 {
     let turned = angle_deg.rem_euclid(360.0);
     let steps_per_deg = [1.0, 10.0, 100.0, 1000.0][decimals];

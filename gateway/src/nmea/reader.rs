@@ -224,12 +224,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The error that the field that was taken last is not what was `expected`.
+    /// The error that the last field read is not what was `expected`.
     fn wrong(&self, expected: &'static str) -> ParseError {
         self.wrong_at(self.at, expected)
     }
 
-    /// The same of another field.
+    /// The same for another field.
     fn wrong_at(&self, field: usize, expected: &'static str) -> ParseError {
         let found = self
             .data

@@ -1,4 +1,4 @@
-//! The Surveyor's own sentences: commands, reports and missions.
+//! The Surveyor's proprietary sentences: commands, reports and missions.
 
 use super::layout::{BRIEF_THOUSANDTHS, Field, Format, HUNDREDTHS, Layout, TENTHS, WHOLE};
 use super::mode::Mode;
@@ -42,8 +42,8 @@ impl Command {
                 zeros(&self.thrust),
                 zeros(&self.difference),
             ),
-            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and
-            // keeps the previous difference if it has decimals.
+            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and keeps the previous
+            // difference if it has decimal places.
             Mode::Thruster => (
                 Format {
                     compass: true,
@@ -204,7 +204,7 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// 15 fields: real drivers refuse any other number of them. The two fuel gauges after the 15th
+    /// 15 fields: real drivers reject any other number of fields. The two fuel gauges after the 15th
     /// are ignored.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
@@ -340,8 +340,7 @@ impl MissionSettings {
     }
 }
 
-/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimals of minutes place it to
-/// 0.1 m.
+/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimal places of minutes give a resolution of 0.1 m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waypoint {
     /// The waypoint's position.

@@ -25,7 +25,7 @@ impl Moment {
 
     /// How long before `now` it was, and how long of that the machine was suspended, if it was.
     pub(super) fn gap(self, now: Moment) -> (Duration, Option<Duration>) {
-        // Linux' monotonic clock stops while the machine sleeps. The time asleep is added, so that
+        // Linux's monotonic clock stops while the machine sleeps. The time asleep is added, so that
         // old data counts as old after waking.
         let suspended = now.suspended.saturating_sub(self.suspended);
         let awake = now.at.saturating_duration_since(self.at);

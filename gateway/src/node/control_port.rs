@@ -1,9 +1,9 @@
 //! The control port of a gateway: operators' requests over TCP, with or without a game. Stops also
 //! arrive as datagrams.
 //!
-//! Requests and replies are one line each, as on the network (`bus::token`). Everybody may query
-//! the status and stop the boat; everything else requires proof of the game's token. Nothing delays
-//! a stop: no silent peer, no garbage, no number of connections.
+//! Requests and replies are one line each, as on the network (`bus::token`). Anyone may query the status and stop the
+//! boat; everything else requires proof of the game's token. Nothing delays a stop: no silent peer, no garbage, no
+//! number of connections.
 
 use super::error::NodeError;
 use super::loop_input::{LoopInput, Stop};
@@ -27,7 +27,7 @@ const CONNECTIONS_MAX: usize = 128;
 /// A connection that is idle for this long, or does not read, is closed.
 const IDLE_MAX: Duration = Duration::from_secs(30);
 const WRITE_MAX: Duration = Duration::from_secs(2);
-/// Maximum bytes of a request: a mission has some hundred waypoints.
+/// Maximum bytes of a request: a mission has a few hundred waypoints.
 const REQUEST_MAX: u64 = 64 * 1024;
 /// How long the gateway loop may take to reply.
 const REPLY_MAX: Duration = Duration::from_secs(2);
@@ -145,8 +145,8 @@ impl Server {
                 };
             answer.push(b'\n');
             stream.write_all(&answer)?;
-            // A browser that a web page makes post here speaks HTTP: its first line is garbage, and
-            // the rest is not read.
+            // A browser that a web page causes to post here speaks HTTP: its first line is garbage, and the rest is not
+            // read.
             if is_garbage {
                 return Ok(());
             }
@@ -183,7 +183,7 @@ impl Server {
         let (reply, replied) = sync_channel(1);
         self.input.request((ask, reply));
         let reply = replied.recv_timeout(REPLY_MAX);
-        reply.unwrap_or_else(|_| self.refusal("the gateway is shutting down, or does not answer"))
+        reply.unwrap_or_else(|_| self.refusal("the gateway is shutting down or not responding"))
     }
 
     /// The stop of this boat that a command requests, if any.

@@ -36,7 +36,7 @@ pub struct EmulatorSettings {
     pub front_seat: FrontSeatSettings,
     /// How long to look for the game.
     pub wait: Duration,
-    /// After this long without a picture the sim counts as dead.
+    /// After this long without a picture, the sim is treated as lost.
     pub silence: Duration,
     /// Set by the caller to end the emulator.
     pub stop: Arc<AtomicBool>,
@@ -125,7 +125,7 @@ pub fn emulate(
     )?;
     let (front_seat, links) = open_front_seat(&settings.front_seat, datum, &incoming, notify)?;
     let frames = Arc::clone(&incoming);
-    // A firmware has sensor models of its own.
+    // Firmware has its own sensor models.
     let _truth = matches!(settings.front_seat, FrontSeatSettings::Sitl { .. }).then(|| {
         bus.subscribe(topic::frame(&game), move |bytes| {
             frames.visit(|incoming| incoming.keep_frame(bytes))

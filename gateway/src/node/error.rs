@@ -38,7 +38,7 @@ pub enum NodeError {
         /// The cause.
         source: std::io::Error,
     },
-    /// Another gateway has the link.
+    /// Another gateway holds the link.
     #[error(transparent)]
     Locked(#[from] LinkLockError),
     /// The recording is incomplete.

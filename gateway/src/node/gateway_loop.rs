@@ -134,8 +134,8 @@ impl GatewayLoop<'_> {
                 .show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
-            // No longer than a heartbeat: the guard cannot tell a loop that waits for a boat from
-            // one that hangs.
+            // No longer than a heartbeat: the guard cannot distinguish a loop that is waiting for a boat from one that
+            // hangs.
             let call = self.input.calls.take(if self.guarded.is_some() {
                 wait.min(HEARTBEAT)
             } else {
@@ -354,9 +354,9 @@ impl GatewayLoop<'_> {
                 self.remark(&format!("connected to {name}"));
                 self.step(Input::LinkUp, None)
             }
-            // An old position would be taken for the boat's present one.
+            // An old position would be mistaken for the boat's current one.
             LinkEvent::Bytes { at, .. } if self.is_too_old(at) => {
-                self.remark("discarded data from the boat: it waited too long");
+                self.remark("discarded data from the boat that had waited too long");
                 self.step(Input::Tick, None)
             }
             LinkEvent::Bytes { at, bytes, .. } => self.step(Input::Bytes(bytes), Some(at)),

@@ -25,7 +25,7 @@ use std::time::Duration;
 
 /// How often the loop sends a heartbeat.
 pub(super) const HEARTBEAT: Duration = Duration::from_millis(100);
-/// Without a heartbeat for this long the gateway counts as hung.
+/// After this long without a heartbeat, the gateway is treated as hung.
 const SILENCE: Duration = Duration::from_millis(400);
 /// After this long the loop itself assumes that the guard has stopped the boat: less, so that the
 /// two never disagree.
@@ -176,16 +176,16 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
                 if let Some(link) = &link {
                     write(link, &stop);
                     if !is_hung {
-                        remark("the gateway hangs: its boat is sent zero thrust and standby");
+                        remark("the gateway has hung: sending zero thrust and standby to its boat");
                     }
                 }
-                // Without a link there is nothing to send, and nobody to notify of the hang.
+                // Without a link there is nothing to send, and no one to notify of the hang.
                 is_hung |= link.is_some();
             }
             Heard::Died => {
                 let Some(link) = &link else { return Ok(()) };
                 write(link, &stop);
-                remark("the gateway has died: its boat is sent zero thrust and standby");
+                remark("the gateway has died: sending zero thrust and standby to its boat");
                 // Repeated, for links that lose bytes, and against data that the dead gateway had
                 // queued in the kernel.
                 for _ in 1..LAST_WORDS {

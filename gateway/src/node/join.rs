@@ -77,7 +77,7 @@ fn keep_joined(
             // Keep trying: the gateway that has the boat may be about to leave, or the next sim
             // may have the boat.
             Err(NotFound::Refused(refusal)) => {
-                calls.put(Call::Remark(format!("the sim refuses: {refusal}")))
+                calls.put(Call::Remark(format!("refused by the sim: {refusal}")))
             }
             Err(NotFound::InTime(..)) => return,
         }

@@ -60,7 +60,7 @@ fn sleep_inhibitor(text: &str) -> Option<String> {
         text.lines()
             .find_map(|line| line.strip_prefix(key)?.strip_prefix('='))
     };
-    // An inhibitor of mode "delay" only delays sleep by some seconds.
+    // An inhibitor of mode "delay" only delays sleep by a few seconds.
     let blocks = value("MODE")? == "block" && value("WHAT")?.split(':').any(|what| what == "sleep");
     blocks.then(|| value("WHO").unwrap_or("somebody").to_owned())
 }

@@ -60,7 +60,7 @@ const POLL: Duration = Duration::from_millis(100);
 pub struct Outside {
     /// The address of the boat.
     pub link: LinkAddress,
-    /// Without a byte for this long the boat counts as lost.
+    /// After this long without a byte, the boat is treated as lost.
     pub silence: Duration,
     /// Where the control port listens; port 0 means any free port.
     pub control: SocketAddr,
@@ -77,7 +77,7 @@ pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 /// the boat receives standby.
 ///
 /// # Errors
-/// [`NodeError`] if another gateway on this machine has the link, if the game refuses, or if the
+/// [`NodeError`] if another gateway on this machine holds the link, if the game refuses, or if the
 /// network, the link or the recording fails. A lost boat or sim is not an error: the gateway waits
 /// for it.
 pub fn serve(
@@ -104,7 +104,7 @@ pub fn serve(
     // The token as known by now: nothing waits for it, and it is not an error if there is no game
     // yet.
     drop(settings.place.net(settings.game.as_ref()));
-    // Until a game provides one, the port has a token of its own; in a game with keys it keeps
+    // Until a game provides one, the port has its own token; in a game with keys it keeps
     // that.
     let token = settings.place.token.get().unwrap_or_else(Token::random);
     // Before the link: a port in use is an error before the boat receives anything from us.
@@ -143,7 +143,7 @@ fn warn(notify: &mut dyn FnMut(NodeEvent<'_>), text: String) {
     });
 }
 
-/// Starts the guard. Failure to start it does not abandon the boat.
+/// Starts the guard. If it cannot start, the boat is not abandoned.
 fn start_guard(
     settings: &Settings,
     mut command: Command,
@@ -155,7 +155,7 @@ fn start_guard(
         command,
         &Protocol::new(&settings.plan.gateway).guard_message(),
     );
-    let text = "there is no guard: if the gateway is killed, nothing stops the boat";
+    let text = "no guard is running: if the gateway is killed, nothing stops the boat";
     started
         .inspect_err(|e| warn(notify, format!("{text}: {e}")))
         .ok()
@@ -211,8 +211,7 @@ fn connect(
         guard: Guard::new(settings.place.token.clone()),
         port: port.as_ref(),
     };
-    // On its own thread: a gateway that searched for its game first abandoned a moving boat
-    // meanwhile.
+    // On its own thread: a gateway that searched for its game first left a moving boat unattended in the meantime.
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {
@@ -242,7 +241,7 @@ fn connect(
     })
 }
 
-/// Starts the recording. Failure to start it does not abandon the boat.
+/// Starts the recording. If it cannot start, the boat is not abandoned.
 fn recorder(
     file: NewFile,
     settings: &Settings,

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// What a node reports to the program that runs it.
 pub enum NodeEvent<'a> {
-    /// It cannot begin yet.
+    /// The node cannot begin yet.
     Looking {
         /// The cause.
         reason: &'a str,
@@ -26,11 +26,11 @@ pub enum NodeEvent<'a> {
     Ended(&'a GatewayStatus),
     /// It records into this file.
     Recording(&'a Path),
-    /// The control port is open, or asks for another token from now on.
+    /// The control port is open, or requires another token from now on.
     ControlPort {
         /// Where it listens.
         address: SocketAddr,
-        /// The token that it asks for, if that is known.
+        /// The token that it requires, if known.
         token: Option<Token>,
     },
     /// Others can connect here.

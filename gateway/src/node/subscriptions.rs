@@ -25,7 +25,7 @@ pub(super) fn subscribe(
             return;
         };
         let mut latest_order = orders.latest_order.lock();
-        // A call that is still waiting will find the newest.
+        // A pending call will pick up the latest order.
         if latest_order.replace((order, bus::clock::now())).is_none() {
             orders.calls.put(Call::Order);
         }
@@ -33,11 +33,10 @@ pub(super) fn subscribe(
     let name = &scenario.vehicles[vehicle.index()].name;
     Ok(vec![
         // From the sim, not from agents: only the sim knows whose order counts (tickets), what the
-        // referee allows, and when an agent is lost. A second implementation on the way to the boat
-        // would eventually be wrong.
+        // referee allows, and when an agent is lost. A second implementation of these rules would eventually diverge.
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
-            // It is read again, behind other requests, to be answered.
+            // The query is processed again, after those queued before it, to send the reply.
             let command =
                 Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
             if let Checked::Granted(command) = command
@@ -53,7 +52,7 @@ pub(super) fn subscribe(
             }
         })?,
         bus.subscribe(topic::control(game), move |bytes| {
-            // All other commands reach the boat as an order, if at all.
+            // All other commands reach the boat as orders, if at all.
             if let Ok(Control::EStop) = serde_json::from_slice(bytes) {
                 controls.stop(Stop::EStop(Scope::Fleet));
             }

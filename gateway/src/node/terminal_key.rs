@@ -13,7 +13,7 @@ const POLL: Duration = Duration::from_millis(50);
 /// Calls `pressed` whenever Enter is pressed in this process's terminal, while it has one.
 ///
 /// The system suspends a background process that reads from its terminal, while its boat continues.
-/// So nothing is read unless this process is in the foreground, and no read blocks.
+/// Therefore nothing is read unless this process is in the foreground, and no read blocks.
 pub fn on_enter(pressed: impl Fn() + Send + 'static) {
     let flags = OFlags::NONBLOCK.bits().cast_signed();
     let Ok(mut terminal) = OpenOptions::new()

@@ -54,7 +54,7 @@ mod tests {
                 .map(|i| frame.lat_lon(place(f64::from(i))))
                 .collect()
         };
-        // Round a circle of 2 m, and four of a hundred far off, evenly round it.
+        // Around a circle of 2 m, with four of a hundred far off, evenly spaced around it.
         let round = fixes(&|i| {
             Ned::toward_deg(i * 90.0 + 3.6 * i).scaled(if i < 4.0 { 50.0 } else { 2.0 })
         });

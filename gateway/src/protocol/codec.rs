@@ -1,4 +1,4 @@
-//! What every protocol does: its commands, and its end of a link.
+//! What all protocols have in common: their commands, and their end of a link.
 
 use super::report::{Report, Shown};
 use crate::config::SwitchWord;

@@ -80,7 +80,7 @@ pub(super) struct Boat {
 }
 
 impl Boat {
-    /// The boat of this system; 0 means the first that appears.
+    /// The boat of this system; 0 means the first one heard.
     pub(super) fn new(system: u8) -> Boat {
         Boat {
             system: (system != 0).then_some(system),
@@ -106,7 +106,7 @@ impl Boat {
 
     /// The target of messages for it.
     pub(super) fn target(&self) -> Target {
-        // No target means everybody: a set-point of zero may be for all.
+        // No target means everyone: a set-point of zero may be for all.
         let system = self.system.unwrap_or(0);
         Target {
             system,
@@ -129,7 +129,7 @@ impl Boat {
         is_its
     }
 
-    /// Whether nobody else commands it: it is in GUIDED or HOLD, or in the mode that we requested.
+    /// Whether no one else commands it: it is in GUIDED or HOLD, or in the mode that we requested.
     pub(super) fn is_ours(&self, asked: Option<&Asked>) -> bool {
         self.mode.is_none_or(|shown| {
             matches!(shown.mode, RoverMode::Guided | RoverMode::Hold)
@@ -137,8 +137,8 @@ impl Boat {
         })
     }
 
-    /// Notes other senders' set-points for the boat, and other ground stations, if the boat or a
-    /// router passes them on to us.
+    /// Records other senders' set-points for the boat, and other ground stations, if the boat or a router passes them
+    /// on to us.
     pub(super) fn report_stranger(&mut self, received: &Received, take: &mut dyn FnMut(Report)) {
         let Received {
             system,
@@ -213,7 +213,7 @@ impl Boat {
         let operator = match shown.mode {
             _ if is_ours => Operator::Secondary,
             RoverMode::Manual | RoverMode::Acro | RoverMode::Steering => Operator::Rc,
-            // A ground station, or a failsafe of its own.
+            // A ground station, or one of the boat's own failsafes.
             _ => Operator::Primary,
         };
         let heading_deg = self
@@ -320,8 +320,7 @@ impl Boat {
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
                 command, result, ..
             }) => {
-                // Only for commands that we send ourselves: an answer goes to everybody on the
-                // link.
+                // Only for commands that we send ourselves: an answer goes to everyone on the link.
                 let is_orderly = matches!(
                     command,
                     MavCmd::MAV_CMD_DO_SET_MODE
@@ -421,7 +420,7 @@ fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
         GpsFixType::GPS_FIX_TYPE_DGPS | GpsFixType::GPS_FIX_TYPE_PPP => 2,
         GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,
         GpsFixType::GPS_FIX_TYPE_RTK_FIXED => 4,
-        // A base station knows its position because somebody entered it.
+        // A base station knows its position because someone entered it.
         GpsFixType::GPS_FIX_TYPE_STATIC => 7,
     })
 }

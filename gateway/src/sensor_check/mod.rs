@@ -310,9 +310,9 @@ impl SensorCheck {
             Some(true_deg) => {
                 let apart_rad = wrap_pi((true_deg - compass_deg).to_radians());
                 let frame = if apart_rad.abs() < SAME_HEADING_RAD {
-                    "its compass counts from true north"
+                    "its compass is relative to true north"
                 } else {
-                    "its compass counts from magnetic north"
+                    "its compass is relative to magnetic north"
                 };
                 format!("heading: {compass_deg:.1} by its compass, {true_deg:.1} true: {frame}")
             }
@@ -436,7 +436,7 @@ impl SensorCheck {
         }
     }
 
-    /// Notes data in a form that the gateway can use.
+    /// Records data in a form that the gateway can use.
     fn note_usable(&mut self, now: SimTime, report: &Report) {
         let usable = match report {
             Report::Fix(Fix {
@@ -521,7 +521,7 @@ fn fixes_in_words(behind_s: f64) -> String {
     )
 }
 
-/// Notes received data: its text, and why it could not be read.
+/// Records received data: its text, and why it could not be read.
 fn note(
     received: &mut BTreeMap<String, Received>,
     now: SimTime,

@@ -2,8 +2,7 @@
 
 use super::{Framer, Received, SensorCheck};
 
-/// Below this rate data arrives too rarely to drive a boat, 1/s: data sent once a second may arrive
-/// a little late.
+/// Minimum rate of data for driving a boat, 1/s: data sent once a second may arrive a little late.
 const RATE_MIN_HZ: f64 = 0.9;
 
 /// Data that a boat must report, in a form that the gateway can use.
@@ -47,7 +46,7 @@ const FOR_A_FIX: &str = "without a fix it cannot be driven";
 const FOR_A_HEADING: &str = "without a heading it cannot be driven";
 const FOR_ITS_BATTERY: &str = "its battery would not be monitored";
 const UNKNOWN_CONTROL: &str =
-    "it is not known who commands it: it can only be armed with control.assumed = true";
+    "it is unknown who commands the boat, which can be armed only with control.assumed = true";
 const SURVEYOR_NEEDS: [Need; 5] = [
     need(Usable::Position, "a position", &["GGA", "RMC"], FOR_A_FIX),
     need(
@@ -88,7 +87,7 @@ const MAVLINK_NEEDS: [Need; 5] = [
         Usable::Control,
         "its mode",
         &["HEARTBEAT"],
-        "it is not known who commands it",
+        "it is unknown who commands the boat",
     ),
     need(
         Usable::Voltage,
@@ -148,7 +147,7 @@ impl SensorCheck {
                 format!("{what}: {name} comes without it: {without}")
             }
             _ => {
-                format!("{names} arrive only {rate_hz:.2} times a second with new data: {without}")
+                format!("{names} bring new data only {rate_hz:.2} times a second: {without}")
             }
         })
     }

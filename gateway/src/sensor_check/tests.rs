@@ -62,7 +62,7 @@ fn findings_are_in_words() {
         checked(&with_true, 10.0)
             .findings(host)
             .join("\n")
-            .contains("counts from magnetic north")
+            .contains("is relative to magnetic north")
     );
 }
 
@@ -88,7 +88,7 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
         // The receiver's time does not advance.
         (
             "GPGGA,150503.00,4121.2880,N,07403.3060,W,1,12,0.9,12.0,M,-33.2,M,,",
-            "GGA or RMC arrive only 0.00 times",
+            "GGA or RMC bring new data only 0.00 times",
         ),
         (
             "PSEAA,-2.2,0.7,,,47.8,-0.04,-0.01,-1.00,-0.01",
@@ -197,6 +197,6 @@ fn a_low_rate_is_reported() {
         checked(TELEMETRY, 0.5)
             .missing()
             .join("\n")
-            .contains("GGA or RMC arrive only 0.50 times a second")
+            .contains("GGA or RMC bring new data only 0.50 times a second")
     );
 }

@@ -32,7 +32,7 @@ pub enum Cause {
         "no recovery point inside the geofence that this gateway uploaded and the boat confirmed"
     )]
     NoRecoveryPoint,
-    /// The gateway did not run for this long, s, and its guard may have stopped the boat.
+    /// The gateway was not running for this long, s, and its guard may have stopped the boat.
     #[error("the gateway hung for {0:.1} s, and its guard may have stopped the boat")]
     Hung(f64),
     /// The link broke.
@@ -109,7 +109,7 @@ impl Cause {
     /// thrust.
     pub(crate) fn leaves_control(self) -> bool {
         // Only for these may a file name a task after a failsafe. A table of every cause with every
-        // action would let somebody keep station on a lost fix.
+        // action would let a boat keep station on a lost fix.
         matches!(
             self,
             Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_)

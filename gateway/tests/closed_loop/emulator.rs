@@ -1,5 +1,4 @@
-//! The emulated boat alone: what it ignores and what it sends. `scenarios/emulator.txt` has the
-//! rest.
+//! The emulated boat on its own: what it ignores and what it sends. The rest is in `scenarios/emulator.txt`.
 
 use crate::boat::emulated;
 use crate::rig::datum;
@@ -80,7 +79,7 @@ fn telemetry_is_what_the_strictest_known_reader_takes_even_in_standby() {
         (14, "2", ""),
         "the last field is empty: {gga:?}"
     );
-    assert_eq!(fields("$GPVTG").len(), 8, "new boats leave the mode out");
+    assert_eq!(fields("$GPVTG").len(), 8, "new boats omit the mode");
     let attitude = fields("$PSEAA");
     assert_eq!(
         (attitude.len(), attitude[3].as_str()),

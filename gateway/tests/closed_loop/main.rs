@@ -1,7 +1,7 @@
 //! The gateway and the emulated boat in a closed loop in memory: the test controls time and injects
 //! faults.
 //!
-//! Most tests are text files: see `scenarios/README.md`.
+//! Most tests are text files (see `scenarios/README.md`).
 
 mod boat;
 mod emulator;

@@ -25,8 +25,8 @@ pub(crate) struct Oracle {
     /// E-stops in force: boat, fleet.
     pub(crate) stops: [bool; 2],
     pub(crate) armed: bool,
-    /// How long after a stop for lack of orders the gateway may arm the boat itself, s, and when
-    /// the boat was stopped so last.
+    /// How long after a stop for lack of orders the gateway may arm the boat itself, s, and when the boat was last
+    /// stopped for that reason.
     pub(crate) rearm_within_s: f64,
     pub(crate) starved: Option<SimTime>,
     pub(crate) link_up: bool,
@@ -38,7 +38,7 @@ pub(crate) struct Oracle {
     pub(crate) partial: String,
 }
 
-/// The time since a moment, s; infinite if it has not come.
+/// The time since a moment, s; infinite if the moment has not come.
 pub(crate) fn age_s(now: SimTime, since: Option<SimTime>) -> f64 {
     since.map_or(f64::INFINITY, |since| (now - since).as_s())
 }
@@ -131,11 +131,11 @@ impl Oracle {
         let age_s = age_s(now, self.ordered);
         assert!(
             age_s <= TTL_S + self.waited_s + 1e-6,
-            "at {now}: {line:?} by an order {age_s} s old"
+            "at {now}: {line:?} for an order {age_s} s old"
         );
         assert!(
             self.armed,
-            "at {now}: {line:?} from a gateway that nobody armed"
+            "at {now}: {line:?} from a gateway that is not armed"
         );
         assert!(number(4).abs() + number(5).abs() <= 100.0, "{line:?}");
     }
@@ -154,7 +154,7 @@ impl Oracle {
         }
         assert!(
             !self.other_operator,
-            "at {now}: {line:?} while somebody else has the boat"
+            "at {now}: {line:?} while another controller commands the boat"
         );
         assert!(
             self.stops == [false; 2],

@@ -44,11 +44,7 @@ fn a_new_order_does_not_wait_for_the_period_of_repetitions() {
         let given = rig.now + SimTime(1);
         let before = rig.sent.len();
         rig.give(&Input::Order(order, given));
-        assert_eq!(
-            rig.sent.len(),
-            before + 1,
-            "{i}: sent in the very same step"
-        );
+        assert_eq!(rig.sent.len(), before + 1, "{i}: sent in the same step");
     }
 }
 
@@ -57,9 +53,9 @@ fn navigation_reports_agree_with_the_boat() {
     let rig = played("under-way\nrun 5");
     let (_, report) = rig.navs.last().expect("it is reported");
     let apart_m = report.nav.at().distance(rig.boat.at);
-    // Minutes have five decimals: 18.5 mm in latitude.
+    // Minutes have five decimal places: 18.5 mm in latitude.
     assert!(apart_m < 0.05 && report.valid, "{apart_m} m, {report:?}");
-    // The compass is magnetic, the sim's heading is true.
+    // The compass reading is magnetic, the sim's heading true.
     assert!(
         (report.nav.psi_rad - rig.boat.psi_rad).abs() < 0.002,
         "{report:?} {:?}",

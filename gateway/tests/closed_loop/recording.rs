@@ -1,4 +1,4 @@
-//! A recording, complete or cut off, is reproduced exactly by its replay.
+//! A recording, complete or truncated, is reproduced exactly by its replay.
 
 use crate::script::played;
 use gateway::bridge::Event;
@@ -8,7 +8,7 @@ use primitives::SimTime;
 use recording::{Bag, Facts, Kind, Opening, RecordingError, Writer};
 use std::io::Cursor;
 
-/// A drive with unrounded orders, a failsafe, a link failure, and arming again.
+/// A drive with unrounded orders, a failsafe, a link failure, and re-arming.
 const DRIVE: &str =
     "boat\norder steer 33.333333333333336 1.1\nrun 1\noperator arm\nrun 5\norder none\nrun 3
 order steer 200 0.7\nrun 1\nlink down\nrun 1\nlink up\nrun 2\noperator arm\nrun 2";
@@ -76,9 +76,9 @@ fn a_recording_that_is_cut_plays_up_to_the_cut() {
     let mut inputs = 0;
     let header = (0..file.len())
         .find(|cut| Bag::of(file[..*cut].to_vec()).is_ok())
-        .expect("it opens at last");
+        .expect("it opens in the end");
     for cut in (header..file.len()).step_by(997) {
-        let replay = replayed(&file[..cut]).unwrap_or_else(|e| panic!("cut at {cut}: {e}"));
+        let replay = replayed(&file[..cut]).unwrap_or_else(|e| panic!("truncated at {cut}: {e}"));
         assert_eq!(replay.difference, None, "cut at {cut}");
         assert!(replay.inputs >= inputs);
         inputs = replay.inputs;

@@ -41,7 +41,7 @@ pub(crate) struct Rig {
     pub(crate) events: Vec<(SimTime, Event)>,
     pub(crate) navs: Vec<(SimTime, NavOut)>,
     pub(crate) sent: Vec<(SimTime, Vec<u8>)>,
-    /// Why the last command was refused, if it was.
+    /// The reason why the last command was refused, if it was.
     pub(crate) refused: Option<String>,
     /// The last log message of the emulated boat.
     pub(crate) remark: String,
@@ -149,7 +149,7 @@ impl Rig {
 
     fn take_out(&mut self, out: Output) {
         for event in out.events {
-            // Any state change from armed requires arming again.
+            // After any change from the armed state, the boat must be armed again.
             if let Event::State { from, to } = &event {
                 let may_rearm = age_s(self.now, self.oracle.starved) <= self.oracle.rearm_within_s;
                 self.oracle.armed &= from != "armed";

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// A boat ten seconds into sailing east at 1.5 m/s.
+/// A boat that has been driving east at 1.5 m/s for ten seconds.
 const UNDER_WAY: &str =
     "order steer 90 1.5\nrun 1\noperator arm\nexpect state = armed\nexpect refused =\nrun 9
 expect speed > 1.2";
@@ -24,7 +24,7 @@ expect speed > 1.2";
 const COMPARISONS: [&str; 8] = ["=", "!=", "~", "!~", "^", "!^", "<", ">"];
 
 #[test]
-fn every_scenario_goes_as_it_is_written() {
+fn every_scenario_runs_as_written() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/closed_loop/scenarios");
     let mut count = 0;
     let mut failures = Vec::new();

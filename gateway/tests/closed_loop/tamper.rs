@@ -121,7 +121,7 @@ fn frozen_compass() -> Tamper {
     })
 }
 
-/// A compass that reads this much too high, degrees.
+/// A compass that reads too high by this much, degrees.
 fn turned_compass(by_deg: f64) -> Tamper {
     changed("PSEAA", move |fields| {
         let shown_deg: f64 = fields[3].parse().expect("a heading");

@@ -47,7 +47,10 @@ fn check(text: &str, side: Side, got: Result<LinkAddress, String>, want: &str) {
         (Err(error), Some(parts)) => {
             assert!(error.contains(&format!("{text:?}")), "{text}: {error}");
             parts.split(" … ").for_each(|part| {
-                assert!(error.contains(part), "{text} should say {part}: {error}")
+                assert!(
+                    error.contains(part),
+                    "the error for {text} should contain {part}: {error}"
+                )
             });
         }
         (got, _) => panic!("{text} for the side that {side:?}: {got:?}, not {want}"),

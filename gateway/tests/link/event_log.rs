@@ -44,7 +44,7 @@ pub(crate) fn open(address: &LinkAddress, settings: LinkSettings) -> (Link, Arc<
     (link, log)
 }
 
-/// Drops a link; this must take less than 200 ms.
+/// Drops a link, which must take less than 200 ms.
 pub(crate) fn close(link: Link) {
     let start = Instant::now();
     drop(link);
@@ -116,7 +116,7 @@ impl EventLog {
         self.until("failure", |events| events.iter().find_map(wait))
     }
 
-    /// Waits until the data with this tag are written.
+    /// Waits until the data with this tag has been written.
     pub(crate) fn written(&self, wanted: u64) {
         let is_it =
             |event: &LinkEvent| matches!(event, LinkEvent::Written { tag, .. } if *tag == wanted);

@@ -1,12 +1,12 @@
-//! Tests links with real sockets and terminals of this machine.
+//! Tests links with this machine's real sockets and terminals.
 
 #![allow(
     clippy::unwrap_used,
-    reason = "helpers of tests too may stop at what cannot be"
+    reason = "helpers of tests may also panic on the impossible"
 )]
 #![allow(
     clippy::disallowed_methods,
-    reason = "a link's promises are in milliseconds of real time"
+    reason = "a link's promises are given in milliseconds of real time"
 )]
 
 mod address;

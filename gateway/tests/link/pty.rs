@@ -42,7 +42,7 @@ fn who_comes_late_gets_what_is_new() {
         let number = sent_at.len() as u64;
         sent_at.push(Instant::now());
         link.send(line(number), number);
-        // The rate of a boat that sends a lot.
+        // The data rate of a boat that sends a lot.
         pause(Duration::from_millis(5));
     }
     let mut reader = attach(link.reach());
@@ -69,8 +69,8 @@ fn what_nobody_reads_does_not_stay() {
     link.send(b"stale".to_vec(), 0);
     log.written(0);
     let unread = || rustix::io::ioctl_fionread(&reader).unwrap();
-    wait_for("some that is unread", || unread() > 0);
-    wait_for("nothing that is unread", || unread() == 0);
+    wait_for("some of it unread", || unread() > 0);
+    wait_for("none of it unread", || unread() == 0);
     link.send(b"fresh".to_vec(), 1);
     assert_eq!(read(&mut reader, 5), b"fresh");
 }
@@ -103,7 +103,7 @@ fn nobody_on_it_blocks_nothing() {
     assert_eq!(
         log.all().iter().filter_map(crate::event_log::up).count(),
         1,
-        "nothing is lost for it"
+        "nothing is lost because of it"
     );
     close(link);
 }

@@ -86,12 +86,12 @@ fn it_displaces_what_is_queued_and_nothing_displaces_it() {
     assert_eq!(
         link.displaced(),
         before + 2,
-        "a set-point that was there, and one that came too late"
+        "a pending set-point, and one that came too late"
     );
     assert!(read_until(&mut boat, STANDBY));
     assert!(sent.join().unwrap());
     link.send(b"after".to_vec(), 3);
-    assert!(read_until(&mut boat, b"after"), "and then life goes on");
+    assert!(read_until(&mut boat, b"after"), "and work continues");
 }
 
 /// Starts to send more than the buffers hold: nothing else is written until the boat reads.

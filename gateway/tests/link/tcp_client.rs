@@ -197,7 +197,7 @@ fn a_peer_that_falls_silent_counts_as_gone() {
         "{:?}",
         down - up
     );
-    // The link retries, though this peer still holds the old connection.
+    // The link retries although this peer still holds the old connection.
     let _second = accept(&listener);
     assert_eq!(log.up(1).0, 1);
 }
@@ -268,7 +268,7 @@ fn a_peer_that_reads_nothing_for_two_seconds_is_dropped_with_its_unread_data() {
         "{:?}: {reason}",
         down - start
     );
-    // A reset rather than a close: data in flight are void.
+    // A reset rather than a close, so data in flight is void.
     let mut waste = Vec::new();
     assert!(
         boat.read_to_end(&mut waste).is_err(),
@@ -312,15 +312,15 @@ fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     // discard data that it has not read yet.
     for _ in 0..10 {
         boat.write_all(b"$GPGGA")
-            .expect("the link listens on for a moment");
+            .expect("the link still listens for a moment");
         thread::sleep(Duration::from_millis(1));
     }
     drop(boat);
     closer.join().unwrap();
 }
 
-/// A full listener, which does not answer the next connection, as a radio out of range does not;
-/// also returns the connection that fills it.
+/// A full listener, which does not answer the next connection, like a radio out of range. Also returns the connection
+/// that fills it.
 fn full() -> (String, socket2::Socket, TcpStream) {
     let listener =
         socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();

@@ -57,7 +57,7 @@ fn a_ninth_is_closed_at_once_and_finds_room_when_one_goes() {
     drop(back_seats.pop());
     log.down(0);
     let mut ninth = join(&link);
-    assert_eq!(log.up(8).0, 8, "a number is never used again");
+    assert_eq!(log.up(8).0, 8, "a number is never reused");
     link.send(b"ahoy".to_vec(), 0);
     assert_eq!(read(&mut ninth, 4), b"ahoy");
 }

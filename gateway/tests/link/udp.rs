@@ -119,7 +119,7 @@ fn a_port_that_is_listened_on_is_linked_to_its_first_sender_and_to_the_next_afte
         boat.set_read_timeout(Some(Duration::from_millis(20)))
             .unwrap();
         let start = Instant::now();
-        // As a boat that does not know whether anybody listens.
+        // Like a boat that does not know whether anyone is listening.
         let count = loop {
             assert!(start.elapsed() < LIMIT, "no link: {:?}", log.all());
             let _ = boat.send_to(&[b'a' + round as u8; 3], free);
@@ -127,7 +127,7 @@ fn a_port_that_is_listened_on_is_linked_to_its_first_sender_and_to_the_next_afte
             if let Ok((count, from)) = boat.recv_from(&mut got) {
                 assert_eq!(
                     from, free,
-                    "the answer comes from the port that was sent to"
+                    "the answer comes from the port that was addressed"
                 );
                 break count;
             }

@@ -1,4 +1,4 @@
-//! An ArduPilot boat and its gateway: who drives it when, and what stops it.
+//! An ArduPilot boat and its gateway: who drives the boat when, and what stops it.
 
 use crate::rig::{Rig, datum, frame, plan};
 use gateway::bridge::{Event, Input};
@@ -76,7 +76,7 @@ fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
     }
 }
 
-/// A boat armed with this order, which nothing drove before, after 20 s.
+/// A boat armed with this order 20 s ago, having been at rest until then.
 fn ordered(drive: Drive, order: Order) -> Rig {
     let mut plan = plan();
     plan.gateway.drive = drive;
@@ -190,7 +190,7 @@ fn a_boat_that_goes_astern_against_its_orders_is_stopped() {
 #[test]
 #[expect(
     deprecated,
-    reason = "ground stations send the frames of the boat, and Rover takes them"
+    reason = "ground stations send frames of the boat, and Rover accepts them"
 )]
 fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
     use PositionTargetTypemask as Mask;
@@ -381,7 +381,7 @@ fn the_guards_message_stops_a_boat_that_is_driven_and_leaves_one_to_its_pilot() 
     let again = rig.bridge.guard_message();
     assert_eq!(
         first, again,
-        "the same bytes, so that the guard need not be told again"
+        "the same bytes, so that the guard needs no update"
     );
 }
 
@@ -459,7 +459,7 @@ fn a_boat_at_rest_is_armed_before_it_is_sent_to_its_recovery_point() {
             (RoverMode::Rtl, true)
         )
     );
-    // A pilot who disarms it on its way keeps it so.
+    // If a pilot disarms it on its way, it stays disarmed.
     rig.ardupilot.receive(rig.now, &disarm());
     rig.run(10.0);
     assert!(!rig.mode().1, "{:?}", rig.events);
@@ -505,7 +505,7 @@ fn a_mission_that_the_boat_does_not_take_is_given_up_with_the_reason() {
 #[test]
 fn an_item_that_the_boat_got_twice_does_not_end_the_upload() {
     let mut rig = Rig::under_way();
-    // The boat hears nothing of the items until it has refused one.
+    // The boat does not receive the items until it has refused one.
     rig.alter = |message| (!matches!(message, MavMessage::MISSION_COUNT(_))).then_some(message);
     rig.operator(OperatorCommand::Mission(mission()));
     rig.run(1.5);

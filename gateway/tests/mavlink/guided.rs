@@ -1,9 +1,9 @@
-//! An emulated ArduPilot boat in GUIDED: it follows what ground stations send as Rover does, or
-//! says that it does not.
+//! An emulated ArduPilot boat in GUIDED: it follows what ground stations send as Rover does, or reports that it does
+//! not.
 
 #![expect(
     deprecated,
-    reason = "ground stations send the older messages and frames, and Rover takes them"
+    reason = "ground stations send the older messages and frames, and Rover accepts them"
 )]
 
 use crate::rig::e7;
@@ -80,7 +80,7 @@ fn local(
     }
 }
 
-/// The boat after a set-point that comes twice a second.
+/// The boat after a set-point that arrives twice a second.
 fn after(mut station: Station, message: &MavMessage, seconds: u32) -> Station {
     for _ in 0..2 * seconds {
         station.send(message);
@@ -94,13 +94,13 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
     let mut messages: Vec<MavMessage> = [
         (MavFrame::MAV_FRAME_LOCAL_NED, [2.0, 1.0]),
         (MavFrame::MAV_FRAME_LOCAL_OFFSET_NED, [2.0, 1.0]),
-        // Of a boat that points east: 10 m ahead, and 20 m to port.
+        // Relative to a boat that points east: 10 m ahead, and 20 m to port.
         (MavFrame::MAV_FRAME_BODY_NED, [1.0, -2.0]),
         (MavFrame::MAV_FRAME_BODY_OFFSET_NED, [1.0, -2.0]),
     ]
     .map(|(frame, at)| MavMessage::SET_POSITION_TARGET_LOCAL_NED(local(frame, POSITION, at, 0.0)))
     .into();
-    // Rover reads the accelerations of no position.
+    // Rover ignores the accelerations in any set-point with a position.
     let (mask, at) = (POSITION & !0b1_1100_0000, [2.0, 1.0]);
     let target = local(MavFrame::MAV_FRAME_LOCAL_NED, mask, at, 0.0);
     messages.push(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target));
@@ -470,7 +470,7 @@ fn a_lost_ground_station_stops_the_boat_after_the_time_that_rover_takes() {
         station.run(0.4);
         assert_eq!(station.ardupilot.mode(), mode, "{action}");
         assert_eq!(state(&mut station), MavState::MAV_STATE_CRITICAL);
-        // Who takes the boat then keeps it, although the station is still lost.
+        // Whoever takes control of the boat then keeps it, although the station is still lost.
         station.ardupilot.set_mode(RoverMode::Guided);
         station.run(10.0);
         assert_eq!(station.ardupilot.mode().0, RoverMode::Guided, "{action}");

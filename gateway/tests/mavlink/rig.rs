@@ -111,7 +111,7 @@ impl Rig {
         Rig::of(plan())
     }
 
-    /// A boat ten seconds into sailing east at 1.5 m/s.
+    /// A boat that has been driving east at 1.5 m/s for ten seconds.
     pub(crate) fn under_way() -> Rig {
         Rig::new().gets_under_way()
     }

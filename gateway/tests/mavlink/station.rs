@@ -62,7 +62,7 @@ impl Station {
         self.ardupilot.receive(self.now, &bytes);
     }
 
-    /// Sends a message; returns what comes within the second in which a reply is due.
+    /// Sends a message; returns what arrives within the second in which a reply is due.
     pub(crate) fn reply(&mut self, message: &MavMessage) -> Vec<MavMessage> {
         self.send(message);
         self.run(0.9)
@@ -98,7 +98,7 @@ impl Station {
                 }
                 heard.push(received.message);
             }
-            // Of a command that the dialect does not know.
+            // The result of a command that the dialect does not know.
             Frame::Unreadable(unreadable) if unreadable.id == COMMAND_ACK_DATA::ID => {
                 acks.push((
                     u16::from_le_bytes([unreadable.byte(0), unreadable.byte(1)]),
@@ -109,7 +109,7 @@ impl Station {
         });
     }
 
-    /// How many messages of a number came that the dialect does not know.
+    /// The number of messages received with a number that the dialect does not know.
     pub(crate) fn unknown(&self, id: u32) -> u64 {
         self.framer.counts().unknown.get(&id).copied().unwrap_or(0)
     }
@@ -155,8 +155,8 @@ impl Station {
             .map(|(_, result)| *result)
     }
 
-    /// The item that a boat asks for.
-    #[expect(deprecated, reason = "ArduPilot asks by MISSION_REQUEST")]
+    /// The item that a boat requests.
+    #[expect(deprecated, reason = "ArduPilot asks with MISSION_REQUEST")]
     pub(crate) fn requested(message: &MavMessage) -> Option<u16> {
         match message {
             MavMessage::MISSION_REQUEST(request) => Some(request.seq),

@@ -1,5 +1,4 @@
-//! Sentences and their meaning as listed in `golden.txt`; also other sentences that we write or
-//! refuse.
+//! Sentences and their meaning as listed in `golden.txt`, and other sentences that we write or reject.
 
 use crate::bodies;
 use crate::sentences::values;

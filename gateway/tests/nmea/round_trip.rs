@@ -1,5 +1,5 @@
-//! Written sentences are read back to their printed resolution if they fit, and as nothing else if
-//! they do not.
+//! Sentences that fit are read back to their printed resolution; those that do not fit are never read as something
+//! else.
 
 use crate::bodies;
 use crate::sentences::{Domain, boat_sentences, on_the_globe, sentences, values};
@@ -35,7 +35,7 @@ fn tolerance(sentence: &Sentence, field: &str) -> Option<(f64, bool)> {
         ("heading_deg", _) => (TENTH, true),
         ("course_deg" | "course_true_deg" | "course_magnetic_deg", _) => (TENTH, true),
         ("thrust", _) if mode == Some(Mode::Speed) => (THOUSANDTH, false),
-        // One percent less, towards zero, where both round up to more than 100 % together.
+        // One per cent less, towards zero, where both round up to more than 100 % together.
         ("difference", Sentence::Command(_)) => (1.0, false),
         ("thrust" | "difference" | "charge" | "charge_used" | "hours" | "throttle_pct", _) => {
             (WHOLE, false)
@@ -111,7 +111,7 @@ fn domain(numbers: impl Strategy<Value = f64> + 'static, texts: BoxedStrategy<St
     }
 }
 
-/// Sentences that fit: no field has to be left out.
+/// Sentences that fit without omitting a field.
 fn tame() -> BoxedStrategy<Sentence> {
     let texts = "[A-Z_]{0,6}".boxed();
     let wide = sentences(&domain(-359.0..359.0, texts.clone()));

@@ -14,9 +14,9 @@ use std::ops::Range;
 pub(crate) struct Domain {
     /// Headings, courses and other bearings, degrees.
     pub(crate) angles: BoxedStrategy<f64>,
-    /// Numbers that are never negative in reality.
+    /// Quantities that are never negative in reality.
     pub(crate) sizes: BoxedStrategy<f64>,
-    /// Numbers that may be negative.
+    /// Quantities that may be negative.
     pub(crate) signed: BoxedStrategy<f64>,
     pub(crate) texts: BoxedStrategy<String>,
     pub(crate) places: BoxedStrategy<LatLon>,

@@ -453,8 +453,8 @@ impl Contest {
 
     /// Advances to the next decision or the end of the game.
     pub fn advance(&mut self) {
-        // Once per decision, before any tick: if orders expired within a decision, a game would
-        // depend on when this is checked.
+        // Once per decision, before any tick: if orders expired within a decision, the game would depend on when this
+        // was checked.
         self.expire_orders();
         self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {
@@ -473,7 +473,7 @@ impl Contest {
         if let Some(radio) = &mut self.radio {
             radio.open_next();
         }
-        // Once per decision: a broken invariant stops the game close to its cause.
+        // Checked once per decision, so that a broken invariant stops the game close to its cause.
         self.assert_sound();
     }
 

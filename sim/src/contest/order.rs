@@ -75,7 +75,7 @@ impl Contest {
     }
 
     /// A vehicle's effective command: its order in force, as modified by rules and operators. A
-    /// boat driven home gets a course at the speed that the rules allow; a speed limit also scales
+    /// boat driven home gets a course at the speed allowed by the rules; a speed limit also scales
     /// thrust. A real boat holds while its position or its agent is lost, after its order has
     /// expired, and after the end of the game: whatever the rules require, it must be supervised.
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {

@@ -38,7 +38,7 @@ pub enum RestoreError {
 
 impl Contest {
     /// All changing state as bytes, marked with its game. A contest of the same game restored from
-    /// it continues identically, to the last bit. Inputs kept for [`Contest::take_inputs`] are not
+    /// it continues bit for bit. Inputs kept for [`Contest::take_inputs`] are not
     /// included.
     pub fn snapshot(&self) -> Vec<u8> {
         // Sea, faults and contact engine are omitted on purpose: they are functions of scenario,
@@ -138,8 +138,7 @@ impl Contest {
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
         }
-        // Only if present, so that digests of games without them stayed the same when radios were
-        // added.
+        // Only if present, so that the digests of games without radios did not change when radios were added.
         if self.radio.is_some()
             || self.sightings.is_some()
             || self.watchdogs.iter().any(Option::is_some)

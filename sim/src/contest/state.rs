@@ -58,15 +58,15 @@ impl Contest {
             self.scenario.tick * world.tick as i64,
             "time is the number of ticks"
         );
-        // The world quarantines boats with a non-finite state. One that gets past that is our bug,
-        // and the game's result would be worthless.
+        // The world quarantines boats with a non-finite state. If one gets past that, it is our bug, and the game's
+        // result would be worthless.
         assert!(
             world.boats.iter().all(|boat| boat.pose.at.is_finite()),
             "positions are finite"
         );
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
-            // Three rules interact here, and each could break it.
+            // Three rules interact here, and each could break this.
             assert!(
                 boat.in_play && !boat.tagged && !boat.outside,
                 "vehicle {i} carries a flag out of play"

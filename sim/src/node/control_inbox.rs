@@ -5,7 +5,7 @@ use messages::Control;
 use messages::refusal::{Refusal, Refusals};
 use std::collections::VecDeque;
 
-/// Maximum number of waiting commands: more than people give between two reads by the sim.
+/// Maximum number of waiting commands: more than people send between two reads by the sim.
 const WAITING_MAX: usize = 64;
 
 /// An operator command. `Q` is a query that needs a reply.
@@ -154,8 +154,7 @@ mod tests {
             [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]
         );
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
-        // Alternating stops and queries do not fill it either: no release stays behind the stop
-        // that it ends.
+        // Alternating stops and queries do not fill it either: no release is left behind after the stop that it ends.
         for i in 0..1000 {
             send(
                 &inbox,

@@ -25,7 +25,7 @@ pub(super) fn play(
         gather(server, tell)?;
         if server.pacing.is_held() {
             server.stay_paused(tell)?;
-            // Other nodes may have joined meanwhile.
+            // Other nodes may have joined in the meantime.
             gather(server, tell)?;
             due = clock::now();
         }
@@ -70,8 +70,7 @@ fn keep_speed(
     Ok(due.min(clock::now()))
 }
 
-/// Waits until all agents have answered the open decision. Those that exceed the scenario's
-/// patience are lost.
+/// Waits until all agents have replied to the open decision. Agents that exceed the scenario's patience are lost.
 fn gather(
     server: &mut GameServer<'_>,
     tell: &mut dyn FnMut(ProgressMessage),
@@ -84,7 +83,7 @@ fn gather(
     while !server.agents.all_answered(tick) && !server.is_stopped() {
         server.listen(Duration::from_millis(50));
         if server.time.worked.saturating_sub(since) >= patience {
-            // All that have not replied, at once: the next decision waits for none of them.
+            // Drops all that have not replied at once: the next decision waits for none of them.
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
             server.send_pictures()?;

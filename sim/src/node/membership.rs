@@ -79,7 +79,7 @@ impl Membership {
         let mut vehicles = Vec::new();
         for name in &request.vehicles {
             let Some(i) = self.places.iter().position(|place| place.name == *name) else {
-                return refused(format!("there is no vehicle {name:?}; {}", self.on_offer()));
+                return refused(format!("no vehicle named {name:?}; {}", self.on_offer()));
             };
             let place = &self.places[i];
             if !place.is_open {
@@ -123,8 +123,8 @@ impl Membership {
     fn on_offer(&self) -> String {
         let names: Vec<&str> = self.open().map(|(_, place)| place.name.as_str()).collect();
         match (self.role, names.is_empty()) {
-            (Role::Agent, _) => format!("there are {}", names.join(", ")),
-            (Role::Gateway, false) => format!("the external vehicles are {}", names.join(", ")),
+            (Role::Agent, _) => format!("the vehicles are: {}", names.join(", ")),
+            (Role::Gateway, false) => format!("the external vehicles are: {}", names.join(", ")),
             (Role::Gateway, true) => {
                 "no vehicle is external: the game has none or is a rehearsal".to_owned()
             }
@@ -144,7 +144,7 @@ impl Membership {
         places.filter_map(|(i, place)| Some((VehicleId::at(i), place.holder.as_mut()?)))
     }
 
-    /// The vehicles of the node with this ticket. None if the ticket is unknown or void.
+    /// The vehicles of the node with this ticket. Empty if the ticket is unknown or void.
     pub(super) fn vehicles_of(&self, ticket: u64) -> impl Iterator<Item = VehicleId> {
         let holds = move |place: &Place| {
             place
@@ -200,7 +200,7 @@ impl Membership {
         self.lose(|holder| holder.node == node)
     }
 
-    /// Drops all nodes that have not answered `tick`. Returns their abandoned vehicles.
+    /// Drops all nodes that have not replied to `tick`. Returns their abandoned vehicles.
     pub fn give_up(&mut self, tick: u64) -> Vec<VehicleId> {
         self.lose(|holder| holder.newest.is_none_or(|newest| newest < tick))
     }
@@ -224,7 +224,7 @@ impl Membership {
         lost.collect()
     }
 
-    /// Whether all present nodes have answered `tick`.
+    /// Whether all present nodes have replied to `tick`.
     pub fn all_answered(&self, tick: u64) -> bool {
         let answered = |holder: &Holder| holder.newest.is_some_and(|newest| newest >= tick);
         self.places.iter().filter_map(Place::present).all(answered)
@@ -398,7 +398,7 @@ pub(super) mod tests {
                 Role::Agent,
                 true,
                 &["green_one"],
-                "there are blue_one, blue_two, red_one, red_two",
+                "the vehicles are: blue_one, blue_two, red_one, red_two",
             ),
             (Role::Agent, true, &["blue_one", "blue_one"], "twice"),
             (Role::Gateway, true, &[], "the gateway names no vehicle"),
@@ -406,13 +406,13 @@ pub(super) mod tests {
                 Role::Gateway,
                 true,
                 &["green_one"],
-                "no vehicle \"green_one\"; the external vehicles are blue_one, red_one",
+                "no vehicle named \"green_one\"; the external vehicles are: blue_one, red_one",
             ),
             (
                 Role::Gateway,
                 true,
                 &["blue_one", "blue_two"],
-                "blue_two is simulated in this game; the external vehicles are blue_one,",
+                "blue_two is simulated in this game; the external vehicles are: blue_one,",
             ),
             (Role::Gateway, true, &["blue_one", "blue_one"], "twice"),
             (Role::Gateway, false, &["blue_one"], "or is a rehearsal"),

@@ -36,7 +36,7 @@ pub(super) struct RecordedTopic {
 
 impl RecordedTopic {
     fn of<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
-        // Checked before recording: a reader must not fail on a stranger's message.
+        // Checked before recording: a stranger's message must not make a reader fail.
         RecordedTopic {
             topic,
             schema: M::SCHEMA,

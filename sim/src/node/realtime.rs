@@ -35,7 +35,7 @@ pub(super) fn play(
             due = clock::now();
         }
         due += period;
-        // At this pace, silence is measured since an agent's last message.
+        // At this pace, silence is measured from an agent's last message.
         server.lose_silent();
         server.contest.advance();
         server.pacing.played();

@@ -36,9 +36,9 @@ const QUESTIONS: usize = 64;
 const REPORT_EVERY: Duration = Duration::from_millis(100);
 /// Interval at which the unchanged state of the run is recorded.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
-/// How long agents have to leave when the game is over.
+/// Time that agents have to leave when the game is over.
 const SHUTDOWN: Duration = Duration::from_secs(2);
-/// Time after which the end of the game is sent again to those that stay.
+/// Time after which the end of the game is sent again to agents that have not left.
 const SEND_END_AGAIN: Duration = Duration::from_millis(200);
 
 pub(super) struct GameServer<'w> {
@@ -54,7 +54,7 @@ pub(super) struct GameServer<'w> {
     pictures: Vec<Publisher>,
     /// In real time, by team.
     throttles: Vec<Throttle>,
-    /// Subscriptions to the bytes of boats' links, while someone wants them.
+    /// Subscriptions to the bytes of boats' links, while they are recorded or observed.
     link_reports: BTreeMap<VehicleId, Declaration>,
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
@@ -137,7 +137,7 @@ impl<'w> GameServer<'w> {
         let pictures = teams
             .map(|key| bus.publisher_with(key, Priority::Normal, delivery))
             .collect::<Result<_, _>>()?;
-        // Commands to boats are urgent: they overtake everything that waits on a link.
+        // Commands to boats are urgent: they overtake everything that is waiting on a link.
         let urgent = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
         let to_boat = |v| Ok((v, urgent(topic::external_order(game, scenario, v))?));
         let external_orders: Vec<_> = scenario
@@ -231,7 +231,7 @@ impl<'w> GameServer<'w> {
             self.listen(Duration::from_millis(100));
         }
         self.last_report = (clock::now(), SimTime::ZERO);
-        // The first agents have waited for the last, so their silence so far does not count.
+        // The first agents have waited for the last, so their silence up to now does not count.
         self.heard.fill(self.time.worked);
         Ok(())
     }
@@ -507,8 +507,8 @@ impl<'w> GameServer<'w> {
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
         let mut sent = start;
-        // Any message may get lost, and an agent without this one reports a lost sim; one that
-        // leaves has received it. The wait is limited, because an agent may hang.
+        // Any message may get lost. An agent that misses this one reports a lost sim; an agent that leaves has received
+        // it. The wait is limited, because an agent may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
             if clock::since(sent) >= SEND_END_AGAIN {
@@ -549,7 +549,7 @@ impl<'w> GameServer<'w> {
         &mut self,
         tell: &mut dyn FnMut(ProgressMessage),
     ) -> Result<(), NodeError> {
-        /// Agents that receive nothing for too long leave.
+        /// Agents leave if they receive nothing for too long.
         const SEND_AGAIN: Duration = Duration::from_secs(1);
         let mut sent = clock::now();
         while self.pacing.is_held() && !self.is_stopped() {
@@ -560,7 +560,7 @@ impl<'w> GameServer<'w> {
                 sent = clock::now();
             }
         }
-        // Agents had nothing to answer meanwhile.
+        // Agents had nothing to reply to in the meantime.
         self.heard.fill(self.time.worked);
         Ok(())
     }

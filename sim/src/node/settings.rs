@@ -63,7 +63,7 @@ impl std::str::FromStr for Pace {
     fn from_str(text: &str) -> Result<Pace, String> {
         let wrong = || {
             format!(
-                "pace is {text:?}, expected lockstep, realtime, or a factor from 0.01x to 1000x such as 4x"
+                "pace is {text:?}, expected lockstep, realtime, or a factor from 0.01x to 1000x, such as 4x"
             )
         };
         match text {

@@ -1,5 +1,4 @@
-//! A sim's subscriptions and queries, with one inbox each for commands, questions and all other
-//! messages.
+//! A sim's subscriptions and queries, with one inbox each for commands, observers' queries and all other messages.
 
 use super::control_inbox::ControlInbox;
 use super::message_inbox::{Incoming, MessageInbox};
@@ -15,7 +14,7 @@ use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A question of an observer.
+/// A query from an observer.
 pub(super) enum Question {
     Scenario,
     Events,
@@ -108,7 +107,7 @@ pub(super) fn open(
     let others = || Arc::clone(&inboxes.others);
     let gone = others();
     let joins = others();
-    // If this does not fit, the sim is busy and reads the inbox before each message anyway.
+    // If the inbox is full, this can be dropped: the sim is busy and checks the inbox before each message anyway.
     let stops = Arc::clone(&inboxes.controls);
     let look = others();
     let stop = move |bytes: &[u8]| {
@@ -124,8 +123,8 @@ pub(super) fn open(
         }
     };
     let mut declarations = vec![
-        // One subscription for all agents: the key has their names for access control, and the
-        // ticket identifies the sender.
+        // One subscription for all agents: the key contains the agents' names for access control, and the ticket
+        // identifies the sender.
         bus.subscribe(
             topic::all_orders(game),
             inboxes.message_callback(|orders, _| Incoming::Orders(orders)),

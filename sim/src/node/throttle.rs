@@ -1,26 +1,26 @@
 //! Sends fewer pictures over a link that cannot carry all of them.
 //!
 //! QUIC queues the datagrams that its congestion window does not admit, up to a mebibyte of them.
-//! Over a link that is slower than the sim, orders would answer ever older pictures. As in LEDBAT
-//! (RFC 6817), what a round trip takes beyond its recent minimum is the time in queues.
+//! Over a link that is slower than the sim, orders would reply to ever older pictures. As in LEDBAT (RFC 6817), the
+//! time in queues is the round-trip time beyond its recent minimum.
 
 use std::time::{Duration, Instant};
 
-/// The time in queues from which pictures are skipped.
+/// The time in queues above which pictures are skipped.
 const QUEUED_MAX: Duration = Duration::from_millis(300);
-/// Pictures skipped in a row, at most: an order lives for a second, and the next may be lost.
+/// Maximum number of pictures skipped in a row: an order lives for a second, and the next picture may be lost.
 const SKIPPED_MAX: u32 = 2;
-/// The minimum is that of one to two windows.
+/// The minimum covers one to two windows.
 const WINDOW: Duration = Duration::from_secs(10);
-/// A team that has not answered for this long is absent, not slow.
+/// A team that has not replied for this long is absent, not slow.
 const ABSENT: Duration = Duration::from_secs(2);
 
 /// The queues between the sim and the agents of a team.
 pub(super) struct Throttle {
-    /// The shortest round trips of the window before and of the open one.
+    /// The shortest round trips of the previous and the current window.
     shortest: [Duration; 2],
     opened: Instant,
-    /// When the last answer arrived, and how long it and its picture were queued.
+    /// When the last reply arrived, and how long the reply and its picture were queued.
     last: (Instant, Duration),
     skipped: u32,
 }
@@ -35,7 +35,7 @@ impl Throttle {
         }
     }
 
-    /// Records an answer with its round trip.
+    /// Records a reply with its round trip.
     pub(super) fn note(&mut self, now: Instant, round_trip: Duration) {
         if now.saturating_duration_since(self.opened) > WINDOW {
             (self.shortest, self.opened) = ([self.shortest[1], Duration::MAX], now);
@@ -60,8 +60,8 @@ mod tests {
 
     const PERIOD: Duration = Duration::from_millis(100);
 
-    /// The share of 600 pictures sent over a link with this delay each way that carries one picture
-    /// per `spacing`, and the round trip of the last.
+    /// The fraction of 600 pictures sent over a link with this delay each way that carries one picture per `spacing`,
+    /// and the last round trip.
     fn play(delay: Duration, spacing: Duration) -> (f64, Duration) {
         let start = bus::clock::now();
         let mut throttle = Throttle::new(start);
@@ -97,7 +97,7 @@ mod tests {
             );
             let (share, round_trip) = play(delay, ms(200));
             assert!((0.4..0.6).contains(&share), "{delay:?}: {share}");
-            // What is sent before an answer shows the queue is queued as well. Without skipping,
+            // Pictures sent before a reply reveals the queue are queued as well. Without skipping,
             // the last round trip would take a minute.
             assert!(
                 round_trip < 4 * delay + ms(1100),

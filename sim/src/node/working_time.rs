@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-/// A turn of the sim that takes longer than this counts as an interruption.
+/// A cycle of the sim that takes longer than this counts as an interruption.
 const TURN_MAX: Duration = Duration::from_secs(1);
 /// How long lost links have to return after an interruption, during which patience does not count.
 /// zenoh waits at most four seconds between two attempts to connect.
@@ -27,8 +27,7 @@ impl WorkingTime {
         }
     }
 
-    /// Accounts for the time since the last call: the sim's own turn, after a wait of up to
-    /// `waited`.
+    /// Accounts for the time since the last call: the sim's own cycle, after a wait of up to `waited`.
     pub(super) fn pass(&mut self, now: Instant, waited: Duration) {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;

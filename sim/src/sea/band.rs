@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn many_components_hold_in_each_band_what_was_asked_for() {
-        /// Tolerance for strata at the edges of a band, as a share of the highest density.
+        /// Tolerance for strata at the edges of a band, as a fraction of the highest density.
         const TOLERANCE: f64 = 0.03;
         for gamma in [1.0, 3.3] {
             let waves = Waves {

@@ -44,7 +44,7 @@ impl Vortex {
         let from_centre = place - self.centre;
         let squared = from_centre.dot(from_centre);
         let s = squared * self.per_radius_squared;
-        // The share of the circulation inside this radius. `expm1` instead of `1 - exp`: in the
+        // The fraction of the circulation inside this radius. `expm1` instead of `1 - exp`: in the
         // core all digits would cancel.
         let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
         // The water's angular rate around the centre, rad/s.

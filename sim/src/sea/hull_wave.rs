@@ -236,8 +236,7 @@ struct Sums {
     of_sin: Lanes<f32>,
 }
 
-/// [`HullWaves::at`] without the use of the sums, which would affect their register allocation
-/// here.
+/// [`HullWaves::at`] without using the sums, which would affect their register allocation here.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,

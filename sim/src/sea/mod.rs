@@ -44,7 +44,7 @@ use scenario::boat::{Drive, Windage};
 use scenario::sea::Sea;
 use std::sync::Arc;
 
-/// Distance of the propellers astern of midships, as a share of the length.
+/// Distance of the propellers astern of midships, as a fraction of the length.
 const PROPELLER_ASTERN: f64 = 0.4;
 
 /// Large tables shared by size of hull.
@@ -162,7 +162,7 @@ impl SeaModel {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else {
             return None;
         };
-        // Boats whose propellers never draw air do not pay for this.
+        // Boats whose propellers never draw air do not incur this cost.
         thruster.flaws.ventilation?;
         // By size, not by name: tables dominate the time to create a game, and strategies often
         // differ where hulls do not.

@@ -186,8 +186,7 @@ struct Sums {
     heave_acceleration: Lanes<f32>,
 }
 
-/// [`WaveResponse::at`] without the use of the sums, which would affect their register allocation
-/// here.
+/// [`WaveResponse::at`] without using the sums, which would affect their register allocation here.
 struct At<'a> {
     response: &'a WaveResponse,
     pose: Pose,

@@ -142,7 +142,7 @@ impl GpsModel {
             let number = (now.0 / self.period.0) as u64;
             let fix = self.measure_fix(state, truth, now, number);
             let dropped = state.dropped || self.fault(FaultKind::GpsLost, now).is_some();
-            // Every boat starts with a fix: nobody launches without one.
+            // Every boat starts with a fix, because no one launches without one.
             if number == 0 || (self.latency == SimTime::ZERO && !dropped) {
                 state.latest = fix;
             } else if !dropped {

@@ -17,7 +17,7 @@ pub struct Truth {
     pub nu_dot: Planar,
     /// Attitude in the waves.
     pub attitude: Attitude,
-    /// The thrusters' current as a share of that at full thrust of both.
+    /// The thrusters' current as a fraction of that at full thrust of both.
     pub thrust_share: f64,
 }
 

@@ -198,7 +198,7 @@ fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
         .collect();
     let share = mean_of(dropped.len(), |i| f64::from(u8::from(dropped[i])));
     let want = RATE_PER_S * MEAN_S / (1.0 + RATE_PER_S * MEAN_S);
-    // 15 000 drop-outs: a standard error of about 1 % of the share.
+    // 15 000 drop-outs: a standard error of about 1 % of the fraction.
     assert!(
         (share / want - 1.0).abs() < 0.05,
         "share {share}, not {want}"

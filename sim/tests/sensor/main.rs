@@ -299,7 +299,7 @@ fn at_rest_a_gyro_reads_its_bias_and_noise_and_an_accelerometer_the_water_s_push
         })
         .collect();
     for (axis, (x, noise, bias)) in columns.iter().enumerate() {
-        // Noise is white, so any correlation of neighbours is bias.
+        // Noise is white, so any correlation between neighbours is bias.
         for lag in [0, 1, 50, 100, 200] {
             let got = mean_of(TICKS - lag, |i| x[i] * x[i + lag]);
             let white = if lag == 0 { noise * noise } else { 0.0 };

@@ -47,7 +47,7 @@ pub(crate) struct Args {
     /// simulator does
     #[arg(long)]
     integers: bool,
-    /// Additional sentences beyond a Surveyor's; gpsd needs rmc for time, speed and course
+    /// Sentences to send in addition to a Surveyor's; gpsd needs rmc for time, speed and course
     #[arg(long, value_name = "KIND", value_delimiter = ',')]
     extra: Vec<ExtraArg>,
     /// Battery charge at the start, per cent, or none for a full battery that does not drain
@@ -63,12 +63,12 @@ pub(super) struct CommonArgs {
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// How long the sim may go without sending a picture before it counts as lost, s
+    /// How long the sim may send no picture before it is treated as lost, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     silence_s: f64,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Prints only errors, and stops when standard input ends
+    /// Prints only errors, and exits when standard input closes
     #[arg(long, hide = true)]
     for_parent: bool,
 }

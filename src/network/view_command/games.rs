@@ -15,9 +15,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tempfile::TempDir;
 
-/// Maximum number of open games: an unused one makes room for another.
+/// Maximum number of open games; beyond it, an unused game is closed to make room.
 const OPEN_MAX: usize = 8;
-/// Maximum number of games played at a time.
+/// Maximum number of games being played at the same time.
 const PLAYED_MAX: usize = 2;
 /// Interval of progress messages to a page, decisions.
 const TELL_EVERY: u64 = 100;
@@ -62,7 +62,7 @@ struct Open {
 
 impl Drop for Open {
     fn drop(&mut self) {
-        // There is no file if the game was recorded before or could not be played.
+        // No file exists if the game had been recorded before or could not be played.
         drop(std::fs::remove_file(&self.file));
     }
 }
@@ -170,7 +170,7 @@ fn prepare(
             format!("{}; rerun, identical to the report", game.about)
         }
         Some(_) => format!(
-            "{}; rerun, NOT identical to the report: this program plays it differently",
+            "{}; rerun, NOT identical to the report: this program gives a different result",
             game.about
         ),
         None => format!("{}; rerun", game.about),

@@ -112,7 +112,7 @@ impl TrainingReport {
 }
 
 impl Run {
-    /// The run in a folder, which `shown` names in commands.
+    /// The run in a folder; commands call the folder `shown`.
     fn of(folder: PathBuf, shown: &Path) -> Run {
         let name = folder
             .file_name()
@@ -133,7 +133,7 @@ impl Run {
             .collect()
     }
 
-    /// Whether it is running; `None` if that is unknown.
+    /// Whether the training is running; `None` if unknown.
     fn is_running(&self) -> Option<bool> {
         match File::open(self.folder.join("times.csv")).ok()?.try_lock() {
             Ok(()) => Some(false),
@@ -198,7 +198,7 @@ impl Run {
     fn table(&self, name: &str, texts: &[&str], numbers: &[&str]) -> Result<Vec<Value>> {
         let path = self.folder.join(name);
         let bytes = read(&path)?;
-        // The last line may still be in the middle of being written.
+        // The last line may be incomplete while it is being written.
         let whole = bytes
             .iter()
             .rposition(|byte| *byte == b'\n')
@@ -237,7 +237,7 @@ impl Run {
             let cell = |column: usize| {
                 record
                     .get(column)
-                    .with_context(|| format!("{} is cut off", at()))
+                    .with_context(|| format!("{} is truncated", at()))
             };
             let mut row = serde_json::Map::new();
             for (name, column) in &texts {

@@ -202,7 +202,7 @@ fn every_mistake_is_reported_at_its_place() {
         assert_eq!(
             read,
             text.lines().filter(|line| line.starts_with("##")).count(),
-            "{name}: cases read, and there"
+            "{name}: cases read, and present"
         );
         failures.extend(
             wrong
@@ -243,6 +243,6 @@ fn the_sound_files_are_sound() {
 
 #[test]
 fn a_file_that_is_not_there_is_reported() {
-    let want = "games/none.toml:1:1: cannot be read (No such file or directory (os error 2)), expected a file";
+    let want = "games/none.toml:1:1: cannot read this file: no such file";
     assert_eq!(problems("games/none.toml", &[]), [want]);
 }

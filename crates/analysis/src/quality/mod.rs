@@ -1,5 +1,5 @@
-//! How sensibly boats play: chattering orders, standing still, edges, contacts, orbits, and whether
-//! anybody attacks.
+//! How sensibly boats play: order chatter, idle time, time near the edges, contacts, circling, and whether any boat
+//! attacks.
 //!
 //! [`GameQuality`] processes a game step by step, recorded or running, and produces a [`Quality`];
 //! results of several games can be added. They are split by strategy, role and mode, because those
@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 const COURSE_JUMP_RAD: f64 = std::f64::consts::FRAC_PI_4;
 /// Threshold of a speed jump between consecutive orders, m/s.
 const SPEED_JUMP_M_S: f64 = 1.0;
-/// A boat slower than this over the ground stands still, m/s.
+/// A boat slower than this over the ground is idle, m/s.
 const STANDING_M_S: f64 = 0.2;
 /// A boat closer to an edge than this, or beyond it, is at the edge, m.
 const EDGE_M: f64 = 3.0;
@@ -278,7 +278,7 @@ impl ModeQuality {
 }
 
 impl Quality {
-    /// Adds other games. Sums of the same games in the same order are equal to the last bit.
+    /// Adds other games. Sums of the same games in the same order are bit-for-bit equal.
     pub fn merge(&mut self, other: &Quality) {
         self.games += other.games;
         self.time_s += other.time_s;

@@ -15,7 +15,7 @@ fn scenario() -> Scenario {
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// At rest in the middle of the own half, mates 30 m apart.
+/// At rest in the middle of their own half, mates 30 m apart.
 fn at_rest(i: usize) -> Sample {
     let nav = Nav {
         north_m: [25.0, 55.0][i % 2],

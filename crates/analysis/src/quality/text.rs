@@ -97,7 +97,7 @@ impl Quality {
     }
 }
 
-/// A name padded to its column; a longer one shifts the others.
+/// A name padded to its column; a longer name shifts the other columns.
 fn name(name: &str) -> String {
     format!("{name:<width$} ", width = NAME - 1)
 }

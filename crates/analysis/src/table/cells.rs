@@ -31,7 +31,7 @@ pub(super) fn text(leaf: &Value) -> String {
         .map_or_else(|| leaf.to_string(), str::to_owned)
 }
 
-/// The values inside a value, by path. Nulls are left out.
+/// The values inside a value, by path. Nulls are omitted.
 pub(super) fn flat(value: &Value) -> BTreeMap<String, Value> {
     let mut leaves = BTreeMap::new();
     lay("", value, &mut leaves);

@@ -39,7 +39,7 @@ pub type Sink<'a> = dyn FnMut(&[String]) -> std::io::Result<()> + 'a;
 #[derive(Debug, Error)]
 pub enum TableError {
     /// The recording has no such topic.
-    #[error("there is no topic {topic:?} in this recording; there are {}", .known.join(", "))]
+    #[error("no topic {topic:?} in this recording; its topics are: {}", .known.join(", "))]
     Unknown {
         /// The topic.
         topic: String,

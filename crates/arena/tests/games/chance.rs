@@ -1,4 +1,4 @@
-//! A scenario knows whether its seed matters: games of two seeds differ exactly if it says so.
+//! A scenario knows whether its seed matters: games with two seeds differ if, and only if, it says so.
 
 use crate::files::{played, shipped};
 use primitives::reseed::Reseed;
@@ -15,7 +15,7 @@ fn digest(scenario: &Scenario, seed: u64) -> String {
     played(&game).digest
 }
 
-/// The shipped games of few boats: larger ones have the same sources of randomness, and take long.
+/// The shipped games with few boats. Larger ones have the same sources of randomness but take long.
 fn small_games() -> Vec<Scenario> {
     let scenario = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.expect("it can be read").path();

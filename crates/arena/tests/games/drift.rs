@@ -1,5 +1,4 @@
-//! Boats in current and wind: the drift that their helms estimate, and where they go in spite of
-//! it.
+//! Boats in current and wind: the drift that their helms estimate, and where they end up in spite of it.
 
 use crate::files::{loaded, watch};
 use primitives::{Ned, VehicleId};
@@ -44,7 +43,7 @@ fn blue_at(contest: &Contest) -> Ned {
     contest.world().state().boats[0].pose.at
 }
 
-/// A boat's path to a point 200 m east across a current of half a metre per second towards north.
+/// A boat's path to a point 200 m east across a current of half a metre per second towards the north.
 /// Returns its distances from the straight line by the remaining distance along it, m, and the
 /// duration, s.
 fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
@@ -71,8 +70,7 @@ fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
 #[test]
 fn a_boat_that_only_points_at_its_goal_drifts_along_the_curve_of_pursuit() {
     // With k the ratio of current to speed through the water, and the goal at the distance a across
-    // the current: y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), like the boat that rows to the other bank
-    // (Boole 1859, ch. XI).
+    // the current: y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), as for a boat rowed to the other bank (Boole 1859, ch. XI).
     let k = 0.5 / SPEED_M_S;
     let curve_m = |to_go_m: f64| {
         let share = (to_go_m / 200.0).clamp(0.0, 1.0);
@@ -169,6 +167,6 @@ fn a_boat_outside_comes_back_against_a_wind_that_drifts_it_faster_than_its_recov
         }
         inside_s.is_none() && contest.now().as_s() < 200.0
     });
-    // 15 m at 0.5 m/s take 30 s; the rest is time to turn.
+    // 15 m at 0.5 m/s takes 30 s; the rest is time to turn.
     assert!(inside_s.is_some_and(|s| s < 150.0), "{inside_s:?}");
 }

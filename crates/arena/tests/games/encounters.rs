@@ -1,4 +1,4 @@
-//! Boats on crossing paths: they keep clear of each other, and do not both turn to the same side.
+//! Boats on crossing paths: they keep clear of each other, and do not both turn into each other's way.
 
 use crate::files::{loaded, watch};
 use analysis::HullRectangle;
@@ -56,7 +56,7 @@ fn encounter(stream: &mut Stream) -> Scenario {
     loaded(&files)
 }
 
-/// The closest distance of the two, m, and whether their hulls touch.
+/// The closest distance between the two, m, and whether their hulls touch.
 fn nearest(scenario: &Scenario) -> (f64, bool) {
     let boats: Vec<VehicleId> = (0..scenario.vehicles.len())
         .map(VehicleId::at)
@@ -98,6 +98,6 @@ fn boats_whose_ways_cross_choose_different_sides() {
     assert!(met > 120, "{met} of 150 met");
     assert!(
         touches == 0 && near <= 3,
-        "{touches} of 150 touched, {near} came nearer than 4 m"
+        "{touches} of 150 touched, {near} came within 4 m"
     );
 }

@@ -53,7 +53,7 @@ fn the_first_game_of_the_paper_is_played_to_its_end() {
         assert_eq!(
             ends,
             [outcome.events.len() - 1],
-            "seed {seed}: it ends once, and nothing comes after"
+            "seed {seed}: it ends once, and nothing follows"
         );
 
         let [grabs, captures, tags] = [
@@ -72,7 +72,7 @@ fn the_first_game_of_the_paper_is_played_to_its_end() {
             .iter()
             .filter(|event| event.event == "left_field")
             .count();
-        assert_eq!(left, 0, "seed {seed}: nobody leaves the field");
+        assert_eq!(left, 0, "seed {seed}: no boat leaves the field");
     }
 }
 
@@ -143,7 +143,7 @@ fn seeds_deal_the_roles_when_the_strategy_says_so() {
             .iter()
             .filter(|role| *role == "easy_attacker")
             .count();
-        assert_eq!(attackers, 2, "seed {seed}: one a team");
+        assert_eq!(attackers, 2, "seed {seed}: one per team");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Whole games in one process: of the shipped files, and of a test's own.
+//! Whole games in one process, from the shipped files and from a test's own.
 
 mod chance;
 mod drift;

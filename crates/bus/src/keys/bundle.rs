@@ -45,7 +45,7 @@ impl Bundle {
         let path = |name: &str| folder.join(name);
         if !path(CERTIFICATE_FILE).exists() {
             let problem = format!(
-                "no keys found: a bundle is a folder with {CERTIFICATE_FILE}{}",
+                "no keys found; a key bundle is a folder that contains {CERTIFICATE_FILE}{}",
                 bundles_in(folder)
             );
             return Err(BundleError {
@@ -75,8 +75,8 @@ impl Bundle {
         let identity = name
             .parse()
             .map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
-        // To its owner an expired certificate looks like a network failure, since the other side
-        // closes the link silently.
+        // To its owner, an expired certificate looks like a network failure, since the other side closes the link
+        // silently.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
         let validity = certificate.validity();
         let hosts = hosts(&certificate);
@@ -174,7 +174,7 @@ fn hosts(certificate: &X509Certificate<'_>) -> Vec<String> {
     names.filter_map(host).collect()
 }
 
-/// The bundles in a folder, as text, for a user who gave the parent folder.
+/// The bundles in a folder, as text, for a user who specified the parent folder.
 fn bundles_in(folder: &Path) -> String {
     let is_bundle = |name: &String| name.parse::<Identity>().is_ok();
     let names = std::fs::read_dir(folder).into_iter().flatten().flatten();

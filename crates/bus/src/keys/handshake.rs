@@ -14,13 +14,13 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Timeout of each step: this only explains a failure after the fact.
+/// Timeout of each step; short, because this only explains a failure after the fact.
 const STEP: Duration = Duration::from_millis(500);
 /// The record type of a TLS alert, with which a TLS server answers other protocols.
 const ALERT: u8 = 0x15;
 
-/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None`
-/// if nothing listens there or nothing is wrong.
+/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None` if nothing is
+/// listening there or nothing is wrong.
 pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
     let address = address(endpoint);
@@ -51,7 +51,7 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     // A suspended sim does not answer either, and may resume.
     let reason = "the server there does not use TLS: the game may have no keys".to_owned();
     tls.is_handshaking().then(|| BusError::Open {
-        what: format!("to connect to {endpoint}"),
+        what: format!("connect to {endpoint}"),
         reason,
     })
 }
@@ -61,7 +61,7 @@ pub(crate) fn is_tls(endpoint: &str) -> bool {
     let asked = || {
         let mut stream = connect(address(endpoint))?;
         let mut answer = [0; 1];
-        // Eight zeros are not a TLS record: a TLS server answers with an alert.
+        // Eight zeros are not a TLS record: a TLS server replies with an alert.
         stream.write_all(&[0; 8]).ok()?;
         stream.read_exact(&mut answer).ok()?;
         Some(answer[0] == ALERT)
@@ -121,7 +121,7 @@ fn explained(error: &Error, host: &str, identity: &Identity) -> String {
             format!("the sim reports that the certificate of {identity} has expired: check both clocks")
         }
         Error::AlertReceived(alert) => format!(
-            "the sim refuses the certificate of {identity} ({alert:?}): its keys and these come from different runs of \
+            "the sim rejects the certificate of {identity} ({alert:?}): its keys and these come from different runs of \
              `squall keys new`"
         ),
         other => other.to_string(),

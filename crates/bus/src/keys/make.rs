@@ -13,7 +13,7 @@ use std::time::Duration;
 use thiserror::Error;
 use time::OffsetDateTime;
 
-/// Clocks of boats and laptops may lag behind that of the machine that makes the keys.
+/// The clocks of boats and laptops may lag behind that of the machine that creates the keys.
 const CLOCKS_DIFFER: Duration = Duration::from_secs(24 * 3600);
 
 /// An error while making keys.
@@ -95,7 +95,7 @@ pub fn make(
     Ok(folders)
 }
 
-/// Creates a folder, readable by its owner only, with its parents; fails if it exists.
+/// Creates a folder, readable only by its owner, with its parents; fails if it exists.
 fn make_folder(path: &Path) -> Result<(), MakeError> {
     let failed = |source| MakeError::Write {
         path: path.to_owned(),

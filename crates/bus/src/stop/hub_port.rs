@@ -65,7 +65,7 @@ impl HubStopPort {
             .filter(|endpoint| endpoint.starts_with("tcp/"))
         {
             let failed = |e: std::io::Error| BusError::Open {
-                what: format!("to receive stops at udp/{}", address(endpoint)),
+                what: format!("receive stops at udp/{}", address(endpoint)),
                 reason: e.to_string(),
             };
             let found = address(endpoint).to_socket_addrs().map_err(failed)?;
@@ -119,7 +119,7 @@ impl Server {
             }
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
                 // Published by the sim's session, which needs no rule at the hub. An unknown boat
-                // gets no answer: nothing can be learnt.
+                // gets no answer and learns nothing.
                 publish(stops.get(name)?, serde_json::to_vec(command));
             }
             _ => {}
@@ -134,7 +134,7 @@ impl Server {
                 .map(|(state, age)| (state.clone(), age.as_millis() as u64))
                 .unwrap_or_default()
         };
-        // Names all boats, so that the operator knows that there are no others.
+        // Lists all boats, so that the operator knows that no others exist.
         let states: States = self
             .heard
             .lock()

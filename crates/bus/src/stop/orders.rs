@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// The interval of later repeats.
 const AGAIN: Duration = Duration::from_millis(200);
-/// A published status may be older than the stop. For this long the stop is repeated although a
-/// status shows it, and a status of a boat without a known different state before does not count.
+/// A published status may be older than the stop. For this long, the stop is repeated even if a status shows it, and a
+/// status is ignored unless the boat was known to be in a different state before.
 const DOUBTED: Duration = Duration::from_secs(1);
 /// How far a gateway's clock may fall behind from one status to the next.
 const DRIFT: Duration = Duration::from_micros(100);
@@ -83,7 +83,7 @@ pub enum StopNews {
     },
 }
 
-/// How a report of a boat relates to a stop.
+/// How a boat's report relates to a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// The answer to this stop.
@@ -495,7 +495,7 @@ impl StopOrders {
                 left.extend(match &stop.sim {
                     Some(Ok(())) => None,
                     Some(Err(reason)) => Some(reason.clone()),
-                    None => Some("the sim does not answer".to_owned()),
+                    None => Some("the sim does not respond".to_owned()),
                 });
             }
         }

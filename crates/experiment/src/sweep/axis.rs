@@ -176,7 +176,7 @@ impl Axis {
         values
     }
 
-    /// The quantile of its distribution at `share`, 0 to 1.
+    /// The quantile of its distribution at `share`, from 0 to 1.
     ///
     /// # Panics
     /// If it has neither values, a range nor a distribution.

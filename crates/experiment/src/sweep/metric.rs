@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Metric {
     /// Its name.
     pub name: &'static str,
-    /// Its unit; empty for counts and shares.
+    /// Its unit; empty for counts and fractions.
     pub unit: &'static str,
     /// Its description.
     pub about: &'static str,

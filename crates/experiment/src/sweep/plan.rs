@@ -227,7 +227,7 @@ fn file_of(setting: &Setting) -> Option<PathBuf> {
     )
 }
 
-/// A setting with the whole path of the file that it names.
+/// A setting with the full path of the file that it names.
 fn beside_here(setting: &Setting) -> Setting {
     let whole = file_of(setting).and_then(|path| std::path::absolute(path).ok());
     let value = whole.map(|path| serde_json::Value::from(path.display().to_string()).to_string());

@@ -347,7 +347,7 @@ fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
 }
 
 /// The text of a file; empty if there is none.
-// Anything else in its place is an error: writing to a named pipe would wait for a reader.
+// Anything else there is an error: writing to a named pipe would wait for a reader.
 fn text_if_any(path: &Path) -> Result<String, StudyError> {
     match text(path) {
         Err(StudyError::Io { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => {

@@ -5,7 +5,7 @@ use super::metric::Metric;
 use super::report::{PointReport, Report};
 use crate::estimate::{Estimate, OBSERVATIONS_MIN};
 
-/// The columns shown for each level: the metric, its heading, its factor, and decimal places.
+/// The columns shown for each level: the metric, its heading, its factor, and its decimal places.
 const COLUMNS: [(&str, &str, f64, usize); 5] = [
     ("win_share", "won %", 100.0, 0),
     ("score", "points", 1.0, 1),
@@ -93,7 +93,7 @@ fn table(effect: &Effect, line: &mut impl FnMut(String)) {
     }
 }
 
-/// Differences in win share to the first entry, at the points where they are significant.
+/// Differences from the first entry in the fraction of games won, at the points where they are significant.
 fn differences(report: &Report, line: &mut impl FnMut(String)) {
     let Some(index) = Metric::place("win_share") else {
         return;

@@ -50,8 +50,7 @@ pub struct LeagueError {
 }
 
 impl League {
-    /// Parses the games of a text. A last line without a newline was torn off while it was written,
-    /// and is ignored.
+    /// Parses the games of a text. A last line without a newline is incomplete and is ignored.
     ///
     /// # Errors
     /// [`LeagueError`] if any other line is not a game.

@@ -1,7 +1,7 @@
 //! Tournaments: every strategy against every other, over many seeds and from both sides.
 //!
 //! A [`Plan`] lists the games, [`play()`] plays them on several threads, and a [`Report`]
-//! summarises the results. The report depends on the plan alone, not on the number of threads.
+//! summarises the results. The report depends only on the plan, not on the number of threads.
 
 mod file;
 mod league;

@@ -46,8 +46,8 @@ const CLOSE: f64 = 1e-10;
 /// itself are ignored.
 ///
 /// The interval is the wider of two: from the curvature of the likelihood, as if all games were
-/// independent, and clustered by seed (Liang and Zeger, Biometrika 1986), since all games of a seed
-/// have the same sea.
+/// independent, and clustered by seed (Liang and Zeger, Biometrika 1986), since all games with the same seed have the
+/// same sea.
 ///
 /// # Panics
 /// If a game has an unknown entry.
@@ -85,7 +85,7 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     (0..entries).map(rating).collect()
 }
 
-/// The expected result of the first of two.
+/// The expected score of the first of two.
 fn expected(strengths: &DVector<f64>, [one, other]: [usize; 2]) -> f64 {
     1.0 / (1.0 + math::exp(strengths[other] - strengths[one]))
 }

@@ -41,7 +41,7 @@ pub struct Report {
     pub seeds_counted: u64,
     /// The number of games not played because the tournament was stopped.
     pub games_unplayed: u64,
-    /// The number of games played that do not count, because others of their seed are missing.
+    /// The number of games played but not counted, because others of their seed are missing.
     pub games_left_out: u64,
     /// Games per second of wall-clock time; the command fills it in.
     pub rate: Option<f64>,
@@ -63,7 +63,7 @@ pub struct Report {
 
 /// The results of an entry; means are per game.
 ///
-/// All games of a seed have the same sea, so they are one observation: the entry's mean over its
+/// All games with the same seed have the same sea, so they are one observation: the entry's mean over its
 /// opponents and both sides. The intervals are over seeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -71,7 +71,7 @@ pub struct Row {
     pub name: String,
     /// Its strategy file.
     pub strategy: String,
-    /// The number of games it played; one against itself counts from both sides.
+    /// The number of games it played; a game against itself is counted from both sides.
     pub games: u64,
     /// Its strength, from wins against all opponents.
     pub rating: Rating,
@@ -87,7 +87,7 @@ pub struct Row {
     pub tagged: Estimate,
     /// Times a boat left the field.
     pub out_of_bounds: Estimate,
-    /// Collisions of its boats; one between team-mates counts twice.
+    /// Collisions of its boats; one between teammates counts twice.
     pub collisions: Estimate,
     /// Games won.
     pub wins: u64,
@@ -104,7 +104,7 @@ pub struct Cell {
     pub row: String,
     /// Its opponent.
     pub column: String,
-    /// The number of games; one against itself counts from both sides.
+    /// The number of games; a game against itself is counted from both sides.
     pub games: u64,
     /// Games that the row won.
     pub wins: u64,
@@ -112,7 +112,7 @@ pub struct Cell {
     pub draws: u64,
     /// Games that the column won.
     pub losses: u64,
-    /// The row's share of the decided games; `None` if none was decided. The interval is over
+    /// The row's share of the decisive games; `None` if there was none. The interval is over
     /// seeds.
     pub won_of_decided: Option<Estimate>,
     /// The mean points of the row and of the column.

@@ -23,8 +23,7 @@ const COLUMNS: [Column; 7] = [
 /// The default width of tables without a terminal, characters.
 pub const WIDTH: usize = 120;
 
-/// The report as text, in tables of at most `columns` characters if names allow it; each command
-/// stays on one line.
+/// The report as text, in tables of at most `columns` characters if names allow it; each command stays on one line.
 pub fn text(report: &Report, columns: usize) -> String {
     let mut text = String::new();
     let sea = report
@@ -113,7 +112,7 @@ fn cells(report: &Report, heading: &str, of: impl Fn(&Row) -> String) -> Cells {
     (heading.to_owned(), report.entries.iter().map(of).collect())
 }
 
-/// A table with a line for each entry. Columns beyond the width go into another table below.
+/// A table with a line for each entry. Columns beyond the width are moved to another table below.
 fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
     let name = width(names);
     let wide = |(heading, cells): &Cells| {
@@ -186,15 +185,13 @@ fn pairings(text: &mut String, report: &Report, challenger: &str) {
     let width = width(&names(report));
     add_line(
         text,
-        format_args!(
-            "\n{challenger} against each entry, with its share of the decided games ± 95 %"
-        ),
+        format_args!("\n{challenger} against each entry, with its share of decisive games ± 95 %"),
     );
     add_line(
         text,
         format_args!(
             "{:width$}{:>7}{:>7}{:>7}{:>20}{:>16}",
-            "", "won", "drawn", "lost", "of decided", "points"
+            "", "won", "drawn", "lost", "of decisive", "points"
         ),
     );
     for cell in report
@@ -220,7 +217,7 @@ fn pairings(text: &mut String, report: &Report, challenger: &str) {
     }
 }
 
-/// A share in per cent with its interval.
+/// A percentage with its interval.
 fn share(estimate: &Estimate) -> String {
     let pct = |share: f64| (100.0 * share).clamp(0.0, 100.0);
     let interval = estimate.low.zip(estimate.high);
@@ -246,7 +243,7 @@ fn ratings(text: &mut String, report: &Report) {
     add_line(
         text,
         format_args!(
-            "\nElo ratings with 95 % intervals: a lead of 100 means an expected result of 64 %"
+            "\nElo ratings with 95 % intervals: a lead of 100 means an expected score of 64 %"
         ),
     );
     for Row {
@@ -408,7 +405,7 @@ mod tests {
         assert_eq!(
             shown(0),
             shown(35),
-            "a column stands there however narrow it is"
+            "a column is shown however narrow it is"
         );
     }
 }

@@ -32,7 +32,7 @@ static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
 
 /// A view whose search for a game never succeeds.
 static LIVE: LazyLock<LiveView> = LazyLock::new(|| {
-    let nowhere = Place::new(|_| Err("there is no game".to_owned()));
+    let nowhere = Place::new(|_| Err("no game found".to_owned()));
     LiveView::open(nowhere, None, Box::new(|_| ()), |_| Err(String::new())).expect("a thread")
 });
 

@@ -138,7 +138,7 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
     }
 }
 
-/// By vehicle index: the remaining share of the time until the boat may tag again.
+/// By vehicle index: the remaining fraction of the time until the boat may tag again.
 fn waits(contest: &Contest) -> Vec<f64> {
     let scenario = contest.scenario();
     let now = contest.now();

@@ -16,7 +16,7 @@ pub struct Transition<'a, A> {
     pub next_observation: &'a [f32],
     /// Whether the step ended the game, so that no further reward follows.
     pub over: bool,
-    /// Whether the boat followed the action. Otherwise only values are learnt from the transition:
+    /// Whether the boat followed the action. Otherwise only values are learned from the transition:
     /// a tagged boat is steered home.
     pub counts: bool,
 }

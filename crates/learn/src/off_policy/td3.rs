@@ -291,7 +291,7 @@ fn with_actions(observations: &[f32], actions: &[Numbers], size: usize) -> Vec<f
     rows
 }
 
-/// Moves a network's parameters towards another's by this share.
+/// Moves a network's parameters towards another's by this fraction.
 fn approach(target: &mut Perceptron, network: &Perceptron, share: f32) {
     let numbers = target.parameters_mut().iter_mut().zip(network.parameters());
     numbers.for_each(|(target, number)| *target += share * (number - *target));

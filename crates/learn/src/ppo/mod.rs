@@ -76,15 +76,15 @@ pub struct Batch {
     pub returns: Vec<f32>,
     /// The learning objective.
     pub lesson: Lesson,
-    /// Whether the boat followed the action. From other samples only the critic learns: it must
-    /// know the value of being tagged.
+    /// Whether the boat followed the action. Only the critic learns from other samples: it must know the value of being
+    /// tagged.
     pub counts: Vec<bool>,
 }
 
 /// A policy's learning objective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lesson {
-    /// Repeat what turned out better than expected, within limits (PPO).
+    /// Repeat actions that turned out better than expected, within limits (PPO).
     Reinforcement,
     /// Repeat the sampled actions regardless of their results: behaviour cloning with a
     /// cross-entropy loss.
@@ -252,10 +252,9 @@ impl ActorCritic {
             .zip(by_logits.chunks_exact_mut(actions));
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
-            // A tagged boat's actions have no effect; policies that learnt from them drove out of
-            // the field. The critic does learn from these samples: before it did, it misjudged
-            // being tagged, and policies that won 16 of 20 games against Pav01 won none after
-            // another half a million samples.
+            // A tagged boat's actions have no effect; policies that learned from them left the field. The critic does
+            // learn from these samples: before it did, it misjudged being tagged, and policies that won 16 of 20 games
+            // against Pav01 won none after another half a million samples.
             if !batch.counts[i] {
                 continue;
             }
@@ -279,7 +278,7 @@ impl ActorCritic {
         self.critic
             .forward(&rows(&batch.states, self.critic.sizes()[0]), &mut trace);
         let deviation = self.scale.deviation();
-        // In standard deviations of returns, so that Adam learns rewards of any scale at its pace.
+        // In standard deviations of returns, so that Adam learns rewards of any scale at the same rate.
         let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
         let mut by_values: Vec<f32> = shard.iter().zip(trace.output()).map(off).collect();
         sums.value = by_values.iter().map(|off| 0.5 * off * off).sum();
@@ -348,7 +347,7 @@ impl Normal {
     }
 }
 
-/// The share of the returns' variance that the critic explained; `None` if the returns are equal.
+/// The fraction of the returns' variance that the critic explained; `None` if the returns are equal.
 fn explained_variance(advantages: &[f32], returns: &[f32]) -> Option<f32> {
     // An advantage is a return minus the critic's value.
     let [rest, all] = [advantages, returns].map(|list| Normal::of(list.iter().copied()).deviation);

@@ -83,7 +83,7 @@ pub struct Worth {
 /// The end of the game.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct End {
-    /// For a win; a loss costs as much.
+    /// For a win; a loss costs the same amount.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub win: f64,
     /// Per point of lead.
@@ -119,7 +119,7 @@ pub struct Place {
     /// without intruders.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub intruder: f64,
-    /// An eighth of the field's width from the own flag towards its nearest untagged enemy, or at
+    /// An eighth of the field's width from one's own flag towards its nearest untagged enemy, or at
     /// that enemy if nearer; 0 a quarter of the width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub guard: f64,

@@ -1,13 +1,13 @@
-//! The progress of a boat and its position among the others: the input of potentials and places.
+//! The progress of a boat and its position among the others: the input to potentials and places.
 
 use primitives::frame::Ned;
 use primitives::id::TeamId;
 use rules::field::Field;
 use sim::Contest;
 
-/// Distance up to which a guarding place has value, as a share of the field's width.
+/// Distance within which a guard position has value, as a fraction of the field's width.
 const REACH: f64 = 0.25;
-/// A guard's distance from the flag or mate, towards the enemy, as a share of the field's width.
+/// A guard's distance from the flag or mate, towards the enemy, as a fraction of the field's width.
 const STAND_OFF: f64 = 0.125;
 
 /// A boat on the field, of one of two teams.
@@ -28,7 +28,7 @@ pub struct BoatProgress {
     pub carrying: bool,
     /// Distance from the nearest enemy flag, in field widths.
     pub from_flag: f64,
-    /// Distance from the nearest flag of its own, in field widths. Under most rules flags are
+    /// Distance from its team's nearest flag, in field widths. Under most rules flags are
     /// brought there and tagged boats are untagged there.
     pub from_home: f64,
     /// Its position among the others, if requested.
@@ -38,19 +38,18 @@ pub struct BoatProgress {
 /// A boat's position among the others, each value from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Among {
-    /// Nearness to the nearest intruder, an untagged enemy on the boat's side: 1 there, 0 a field's
-    /// width away or without an intruder.
+    /// Proximity to the nearest intruder, an untagged enemy on the boat's side: 1 at its position, 0 at a field width
+    /// or more, or without an intruder.
     pub at_intruder: f64,
-    /// Nearness to the place that guards its own flag; see [`Place::guard`](super::Place::guard).
+    /// Proximity to the place that guards its own flag; see [`Place::guard`](super::Place::guard).
     pub on_guard: f64,
-    /// Nearness to the place that shields a mate; see [`Place::shield`](super::Place::shield).
+    /// Proximity to the place that shields a mate; see [`Place::shield`](super::Place::shield).
     pub at_shield: f64,
-    /// Distance from the nearest untagged enemy: 0 there, 1 from a quarter of the field's width on.
+    /// Distance from the nearest untagged enemy: 0 at its position, 1 at a quarter of the field's width and beyond.
     pub clear: f64,
 }
 
-/// Each boat's progress by its own sensors, with `among_others` including its position among the
-/// others.
+/// Each boat's progress according to its own sensors and, with `among_others`, its position among the others.
 pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team: TeamId| Placed {
@@ -112,8 +111,8 @@ struct Posts {
     /// By team, the place that guards its flag; of several flags, the one nearest to an untagged
     /// enemy. None without untagged enemies.
     flag: [Option<Ned>; 2],
-    /// Untagged boats on the enemies' side: index, distance of the nearest untagged enemy in
-    /// metres, and the place that shields the boat from that enemy.
+    /// Untagged boats on the enemies' side: index, distance to the nearest untagged enemy in metres, and the place that
+    /// shields the boat from that enemy.
     mates: Vec<(usize, f64, Ned)>,
 }
 
@@ -263,8 +262,8 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_untagged_enemy_on_the_own_side_is_an_intruder() {
-        // One of the two on the first team's side is tagged. The other is 32 m and 40 m away.
+    fn the_nearest_untagged_enemy_on_a_teams_own_side_is_an_intruder() {
+        // One of the two enemies on the first team's side is tagged. The other is 32 m and 40 m from the boats.
         let boats = seen([
             (70.0, 72.0, false),
             (30.0, 40.0, false),
@@ -314,7 +313,7 @@ mod tests {
                 (20.0, 40.0, false),
             ])
         };
-        // From (100, 40) 20 m towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
+        // 20 m from (100, 40) towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
         close(shield((100.0, 40.0, false))[0].among.at_shield, 0.75);
         // A boat does not shield itself. The other mate's only target is the boat at (110, 40), so
         // its place is (130, 40).

@@ -33,14 +33,14 @@ impl Played {
         played
     }
 
-    /// The share of games won; a draw counts half.
+    /// The fraction of games won; a draw counts half.
     pub fn won(&self) -> f64 {
         let [won, drawn, lost] = self.results.map(f64::from);
         (won + 0.5 * drawn) / (won + drawn + lost).max(1.0)
     }
 }
 
-/// Plays one game per seed with a policy's likeliest actions, or its continuous ones.
+/// Plays one game per seed with a policy's most likely actions, or its continuous ones.
 ///
 /// # Errors
 /// [`SetupError`] if the setup cannot be played.

@@ -6,7 +6,7 @@ use scenario::policy::{PartialSpec, PolicyModel};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// Draw weight of an opponent that never wins, as a fraction of an equal share.
+/// Draw weight of an opponent that never wins, relative to equal weights.
 const LEAST: f64 = 0.1;
 /// Decay of a game's weight per later game.
 const MEMORY: f64 = 0.98;
@@ -14,7 +14,7 @@ const MEMORY: f64 = 0.98;
 /// A past version of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PastSelf {
-    /// Samples learnt by then.
+    /// Samples learned by then.
     pub(super) samples: u64,
     onnx: Vec<u8>,
 }
@@ -125,7 +125,7 @@ impl League {
 }
 
 impl Record {
-    /// How much there is to learn from an opponent, from its share of wins.
+    /// How much can be learned from an opponent, given its fraction of wins.
     fn urgency(self, priority: f64) -> f64 {
         // The prior is one win in two games.
         let lost = (self.lost + 1.0) / (self.games + 2.0);

@@ -57,7 +57,7 @@ pub struct Trainer {
 /// Statistics of an update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Samples learnt from so far.
+    /// Samples learned from so far.
     pub samples: u64,
     /// Index of the stage.
     pub stage: usize,
@@ -204,7 +204,7 @@ impl Trainer {
         &self.state.learner
     }
 
-    /// The number of samples learnt so far, and of all stages.
+    /// The number of samples learned so far, and in all stages.
     pub fn samples(&self) -> (u64, u64) {
         (
             self.state.samples,
@@ -402,7 +402,7 @@ impl Trainer {
             played,
         };
         let won = evaluated.won();
-        // By evaluation games with the same seeds each time, since returns of self-play say little.
+        // By evaluation games with the same seeds each time, since returns from self-play are not informative.
         let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
         if is_best {
             self.state.best = Some(Best {
@@ -452,7 +452,7 @@ impl Trainer {
     }
 }
 
-/// Plays and learns once by PPO, after this share (`done`) of all samples.
+/// Plays and learns once by PPO, after this fraction (`done`) of all samples.
 fn update_by_ppo(
     learner: &mut ActorCritic,
     environment: &mut VectorEnvironment,

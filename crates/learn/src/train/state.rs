@@ -27,7 +27,7 @@ pub(super) struct State {
     pub(super) best: Option<Best>,
     /// The past policies at the last restart of all games; empty until the first update after it.
     pub(super) past_at_restart: Vec<PastSelf>,
-    /// The updates since then: played again, they bring the games to this state.
+    /// The updates since then: when replayed, they bring the games to this state.
     pub(super) played: Vec<PlayedUpdate>,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct PlayedUpdate {
 /// An evaluation of a policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluated {
-    /// Samples learnt by then.
+    /// Samples learned by then.
     pub samples: u64,
     /// Index of the stage.
     pub stage: usize,
@@ -54,7 +54,7 @@ pub struct Evaluated {
 }
 
 impl Evaluated {
-    /// The share of all games won; a draw counts half.
+    /// The fraction of all games won; a draw counts half.
     pub fn won(&self) -> f64 {
         self.played
             .iter()
@@ -67,9 +67,9 @@ impl Evaluated {
 /// The best policy of a training run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
-    /// Samples learnt by then.
+    /// Samples learned by then.
     pub samples: u64,
-    /// The share of all evaluation games won; a draw counts half.
+    /// The fraction of all evaluation games won; a draw counts half.
     pub won: f64,
     /// Its ONNX file.
     pub onnx: Vec<u8>,

@@ -69,7 +69,7 @@ pub struct Ppo {
     /// Initial step size of the optimiser.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// Share of it left at the end of the last stage; it falls linearly.
+    /// Fraction of it left at the end of the last stage; it falls linearly.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.1))]
     pub learning_rate_end: f32,
     /// Limit of the relative change of an action's probability.
@@ -125,8 +125,8 @@ pub struct Td3 {
     /// Factor on rewards; values should be about 1 to 10.
     #[schemars(range(min = 0.000_001, max = 1_000_000), extend("default" = 1))]
     pub reward_scale: f32,
-    /// Share of the learnt weights that target networks adopt per step of the policy's optimiser
-    /// (Polyak averaging).
+    /// Fraction of the learned weights that target networks adopt per step of the policy's optimiser (Polyak
+    /// averaging).
     #[schemars(range(min = 0, max = 1), extend("default" = 0.005))]
     pub target_rate: f32,
     /// Standard deviation of exploration noise on actions.
@@ -174,19 +174,19 @@ pub struct Dqn {
     /// Optimiser steps between updates of the target network.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 500))]
     pub target_every: u32,
-    /// Initial share of uniformly random actions.
+    /// Initial fraction of uniformly random actions.
     #[schemars(range(min = 0, max = 1), extend("default" = 1))]
     pub epsilon: f32,
-    /// Final share of uniformly random actions.
+    /// Final fraction of uniformly random actions.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.05))]
     pub epsilon_end: f32,
-    /// Samples over which the share falls linearly.
+    /// Samples over which the fraction falls linearly.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64), extend("default" = 300_000))]
     pub epsilon_samples: u64,
 }
 
 impl Dqn {
-    /// The share of uniformly random actions after this many samples.
+    /// The fraction of uniformly random actions after this many samples.
     pub fn epsilon_after(&self, samples: u64) -> f32 {
         let done = (samples as f64 / self.epsilon_samples as f64).min(1.0) as f32;
         self.epsilon + (self.epsilon_end - self.epsilon) * done

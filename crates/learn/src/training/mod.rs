@@ -37,7 +37,7 @@ pub struct Training {
     /// Games played in parallel.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub games: u32,
-    /// Random seed. Together with file and version it determines the weights to the bit.
+    /// Random seed. Together with file and version it determines every bit of the weights.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// The networks.
@@ -67,8 +67,7 @@ impl ScenarioFile for Training {
     }
 }
 
-/// What a critic receives, which estimates the value of the rest of a game. It is used only in
-/// training.
+/// Input of the critic, which estimates the value of the rest of a game. It is used only in training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriticInput {
@@ -100,7 +99,7 @@ pub struct League {
     /// Number of policies kept, the newest.
     #[schemars(range(min = 1, max = 1000), extend("default" = 20))]
     pub most: usize,
-    /// Opponents are drawn in proportion to this power of their share of wins; 0: uniformly
+    /// Opponents are drawn in proportion to this power of their fraction of wins; 0: uniformly
     /// (prioritised fictitious self-play, Vinyals and others, Nature 2019). Every opponent has a
     /// small minimum.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
@@ -116,8 +115,8 @@ pub struct Evaluation {
     /// Games per opponent, half of them on each side, always with the same seeds.
     #[schemars(range(min = 2, max = 100_000), extend("default" = 20))]
     pub games: u32,
-    /// Strategy files of the opponents, in the game of the last stage. The best policy wins most of
-    /// all games; draws count half.
+    /// Strategy files of the opponents, in the game of the last stage. The best policy wins the most games in total;
+    /// draws count half.
     #[schemars(with = "Vec<FilePath>", length(min = 1, max = 100))]
     pub opponents: Vec<PathBuf>,
 }
@@ -170,7 +169,7 @@ pub struct Stage {
     /// Samples after which it ends.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
     pub samples: u64,
-    /// Share of games won in an evaluation that ends it early; draws count half. Default: never.
+    /// Fraction of games won in an evaluation that ends it early; draws count half. Default: never.
     #[schemars(range(min = 0, max = 1))]
     pub until_won: Option<f64>,
 }
@@ -182,7 +181,7 @@ pub struct Teacher {
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
     /// With `action = "options"`: the option of each mode. An omitted mode is the option of the
-    /// same name, or is not learnt from.
+    /// same name, or is not learned from.
     #[schemars(extend("default" = {}))]
     pub options: BTreeMap<String, String>,
 }

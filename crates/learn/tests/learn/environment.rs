@@ -321,7 +321,7 @@ fn rewards_are_what_events_say_and_potentials_cancel_out() {
         score[1] > 0 && sum.iter().all(|sum| (sum - ahead).abs() < 1e-4),
         "{sum:?}, {score:?}"
     );
-    // Undiscounted, a potential sums to minus its initial value, whatever the actions.
+    // Undiscounted, a potential sums to minus its initial value whatever the actions.
     let potential = Potential {
         attack: 1.0,
         untag: 0.5,

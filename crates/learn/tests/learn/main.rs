@@ -1,5 +1,5 @@
 //! Environments, networks, learning algorithms, training runs, and the shipped policies.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 mod environment;
 mod fixture;

@@ -55,7 +55,7 @@ fn program(scenario: &Scenario, strategy: &Strategy, vehicle: VehicleId) -> Prog
     agent::roles::role_in(scenario, vehicle, strategy).clone()
 }
 
-/// A mind whose actions come from the same network outside, as in training.
+/// A mind whose actions come from the same network outside the helm, as in training.
 struct Driven {
     pilot: Pilot,
     network: Network,
@@ -181,7 +181,7 @@ fn a_direct_model_steers_without_a_helm() {
     );
 }
 
-/// A network with non-finite outputs: its weights add up beyond single precision.
+/// A network with non-finite outputs: its weights add up to more than single precision can hold.
 fn model_of_nan() -> PolicyModel {
     let mut stream = primitives::stream::Stream::new(8, "test/model");
     let mut network = Perceptron::new(&[SPEC.observation.size(1, 2), 4, 17], 1.0, &mut stream);
@@ -209,7 +209,7 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
         (
             &large,
             for_one,
-            "the model takes 45 values, but a boat of this game has 333: it was trained for another team size",
+            "the model has 45 inputs, but a boat in this game has 333 values: it was trained for another team size",
         ),
     ] {
         let vehicle = VehicleId::at(0);

@@ -1,4 +1,4 @@
-//! Boats under direct control move as in Pyquaticus itself: see `pyquaticus/README.md`.
+//! Boats under direct control move as in Pyquaticus itself (see `pyquaticus/README.md`).
 
 use super::fixture::game;
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
@@ -42,7 +42,7 @@ impl Recorded {
     }
 }
 
-/// A pilot that plays recorded actions, one each decision.
+/// A pilot that repeats recorded actions, one per decision.
 struct Replayed {
     pilot: Pilot,
     actions: std::vec::IntoIter<usize>,
@@ -94,7 +94,7 @@ fn boats_move_as_in_pyquaticus() {
         ..game("pyquaticus_2v2")
     };
     let mut competition = game("mctf_2026");
-    // Off in the recording too.
+    // Off in the recording as well.
     competition.rules.power_play = SimTime::ZERO;
     // There, both teams start from the north.
     let red_1 = competition.vehicles[3].start_position.clone();

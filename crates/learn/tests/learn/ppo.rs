@@ -10,7 +10,7 @@ use primitives::stream::Stream;
 #[test]
 fn gradients_are_the_slopes_of_the_output() {
     const STEP: f32 = 1e-2;
-    // For values of about 1 from finite differences in single precision.
+    // For values of about 1 by finite differences in single precision.
     const TOLERANCE: f32 = 5e-3;
     let mut stream = Stream::new(3, "gradient");
     let mut network = Perceptron::new(&[5, 7, 6, 3], 1.0, &mut stream);
@@ -106,8 +106,7 @@ fn adam_goes_as_its_authors_say() {
         "got {parameters:?}, want {want}"
     );
     assert!((parameters[1] + 0.8).abs() < 1e-6, "{parameters:?}");
-    // A gradient that is too long is scaled to the limit. Of the first step only the reported norm
-    // changes.
+    // A gradient that is too long is scaled to the limit. In the first step, this changes only the reported norm.
     let mut adam = Adam::new(1, AdamSettings::default());
     let mut parameters = [0.0_f32];
     assert!(

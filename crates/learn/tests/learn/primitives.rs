@@ -106,7 +106,7 @@ fn the_options_of_the_chooser_are_the_shipped_policies() {
     assert_eq!(trained, wanted);
 }
 
-/// The share of time that boats spend at home and untagged, with actions from `act`.
+/// The fraction of time that boats spend at home and untagged, with actions from `act`.
 fn at_home(mut act: impl FnMut(&[f32]) -> Action) -> f64 {
     let mut setup = setup("retreat");
     setup.opponents.retain(

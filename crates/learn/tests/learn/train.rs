@@ -42,7 +42,7 @@ fn a_policy_learns_to_beat_an_idle_team_and_to_score_against_pav01() {
         .map_or(0.0, |evaluated| evaluated.played[1].1.won());
     assert!(
         idle >= 0.9,
-        "won a share of {idle} of the games against an idle team"
+        "won a fraction of {idle} of the games against an idle team"
     );
 }
 
@@ -99,7 +99,7 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
         let is_off_policy = name != "ppo";
         assert!(
             !is_off_policy || learnt > 20,
-            "{name}: {learnt} of {} updates learnt",
+            "{name}: {learnt} of {} updates learned",
             progress.len()
         );
         assert_eq!(
@@ -112,8 +112,7 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
             "{name}: 3 threads gave other results"
         );
 
-        // Resumed whenever games restart, and at every fifth update, where games and past policies
-        // go on.
+        // Resumed whenever games restart, and at every fifth update, where games and past policies continue.
         let mut trainer = trainer(training.clone(), 2);
         let mut taken_up = [0; 2];
         for update in 0.. {

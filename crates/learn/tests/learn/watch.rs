@@ -1,4 +1,4 @@
-//! Watched games: their inputs suffice to replay them to the bit.
+//! Watched games: their inputs suffice to replay them bit for bit.
 
 use super::fixture::{checked, file, raw, written};
 use agent::Action;

@@ -1,4 +1,4 @@
-//! The database: registration, types, clients that leave, and what each is told.
+//! The database: registration, types, clients that leave, and what each client receives.
 
 use super::*;
 use crate::mail::MAIL_MAX;

@@ -1,4 +1,4 @@
-//! What of an accepted file is evaluated, and what it may cost.
+//! Which parts of an accepted file are evaluated, and their maximum cost.
 
 use super::*;
 

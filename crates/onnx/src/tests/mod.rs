@@ -146,18 +146,18 @@ fn bytes_that_are_no_model_are_refused() {
     let cases: [(&[u8], &str); 9] = [
         (
             b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n",
-            "a Git LFS pointer, expected the ONNX file that it stands for: run `git lfs pull`",
+            "a Git LFS pointer, expected the ONNX file that it points to: run `git lfs pull`",
         ),
         (
             b"",
-            "not an ONNX file, or a damaged one: byte 0: a message without a graph",
+            "not an ONNX file, or corrupted (a message without a graph at byte 0)",
         ),
         (b"\x89HDF\r\n\x1a\n", "not an ONNX file"),
-        (b"PK\x03\x04", "byte 2: a field of wire type 3"),
+        (b"PK\x03\x04", "unexpected wire type 3 at byte 2"),
         (&sound[..sound.len() - 1], "bytes remaining"),
         (
             b"\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff",
-            "byte 0: an unterminated number",
+            "an unterminated number at byte 0",
         ),
         (
             b"\x3a\xff\xff\xff\xff\xff\xff\xff\xff\x7f",

@@ -166,7 +166,7 @@ def activations():
 
 
 def normalisations():
-    """Layers that normalise, reductions, and what exporters write around them."""
+    """Normalisation layers, reductions, and the nodes that exporters add around them."""
     graph = Graph()
     node, constant = graph.node, graph.constant
     row = ["batch", 6]

@@ -1,4 +1,4 @@
-//! Perceptrons as files: written ones can be read, and inconsistent ones are not written.
+//! Perceptrons as files: those written can be read, and inconsistent ones are not written.
 
 use crate::assert_close;
 use onnx::{Head, Layer, Network, Perceptron};

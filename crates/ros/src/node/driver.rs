@@ -1,4 +1,4 @@
-//! A mind that follows what ROS 2 asks of its boat.
+//! A mind that follows ROS 2's requests for its boat.
 
 use super::Incoming;
 use super::graph::Graph;
@@ -13,8 +13,8 @@ use primitives::VehicleId;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A request lasts no longer than this, whatever the game time: a paused game does not begin again
-/// with the request of a program that has ended.
+/// A request lasts no longer than this, whatever the game time: a paused game must not resume with the request of a
+/// program that has ended.
 const WALL_MAX: Duration = Duration::from_secs(5);
 
 /// The newest request for a boat.
@@ -49,7 +49,7 @@ pub(super) fn subscribe(
         let (cell, refusals) = (Arc::clone(cell), Arc::clone(refusals));
         move |asked: Option<Result<SetPoint, Refusal>>| match asked {
             Some(Ok(set_point)) => cell.put(set_point),
-            // A request that makes no sense ends the one before it: the boat holds.
+            // An invalid request ends the previous one: the boat holds.
             Some(Err(refusal @ Refusal::BadNumber)) => {
                 refusals.visit(|refusals| refusals.count(refusal));
                 cell.put(SetPoint::Order(Order::Hold));
@@ -82,7 +82,7 @@ pub(super) struct Driver {
     pub(super) boat: VehicleId,
     pub(super) cell: Arc<RequestCell>,
     pub(super) follower: Follower,
-    /// Where pictures go on their way to ROS 2.
+    /// Destination of pictures on their way to ROS 2.
     pub(super) incoming: Arc<Latest<Incoming>>,
 }
 

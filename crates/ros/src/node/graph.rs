@@ -26,7 +26,7 @@ pub(super) struct Topic<M> {
 }
 
 impl Graph {
-    /// Connects to the router at this endpoint, or becomes it.
+    /// Connects to the router at this endpoint, or acts as the router.
     pub(super) fn open(router: &str, domain: u32) -> Result<Graph, BusError> {
         Ok(Graph {
             session: RosSession::open(router)?,
@@ -131,7 +131,7 @@ impl Drop for Graph {
 }
 
 impl<M: RosMessage + Serialize> Topic<M> {
-    /// Sends the message that `make` returns, if anybody subscribes.
+    /// Sends the message that `make` returns, if anyone has subscribed.
     pub(super) fn send(&mut self, make: impl FnOnce() -> M) -> Result<(), BusError> {
         if self.publisher.is_heard() {
             self.send_bytes(codec::encode_plain(&make()))

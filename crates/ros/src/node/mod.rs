@@ -1,4 +1,4 @@
-//! The bridge on both networks: finds a game, shows it to ROS 2, and drives boats as ROS 2 asks.
+//! The bridge on both networks: finds a game, publishes it to ROS 2, and drives boats as ROS 2 requests.
 //!
 //! Observing and driving have separate sessions with the sim, and ROS 2 has a third. Only the
 //! newest frame and picture are kept: a slow ROS network loses messages and delays nothing.
@@ -31,9 +31,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// How often a bridge without news checks whether the game goes on.
+/// How often a bridge without news checks whether the game continues.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long the sim may be missing before the game counts as over. A paused game sends no frames.
+/// How long the sim may be missing before the game is considered over. A paused game sends no frames.
 const MISSING_MAX: Duration = Duration::from_secs(5);
 /// How long an agent without pictures waits for the sim.
 const SILENCE: Duration = Duration::from_secs(60);
@@ -64,9 +64,9 @@ pub struct Settings {
 
 /// What a bridge reports to the program that runs it.
 pub enum News<'a> {
-    /// The ROS network is there.
+    /// The ROS network is available.
     OnRos {
-        /// Whether this process is its router.
+        /// Whether this process is acting as its router.
         is_router: bool,
     },
     /// No sim or no free boat found yet.
@@ -74,7 +74,7 @@ pub enum News<'a> {
         /// Why the bridge is waiting.
         reason: &'a str,
     },
-    /// The bridge shows a game.
+    /// The bridge is publishing a game.
     Showing {
         /// The game's name.
         game: &'a str,
@@ -106,7 +106,7 @@ pub enum RosError {
         "{0:?} cannot be part of a ROS 2 topic: rename it with letters, digits and single _, beginning with a letter"
     )]
     Name(String),
-    /// The sim has left.
+    /// The sim is lost.
     #[error("lost the sim")]
     SimGone,
 }
@@ -133,7 +133,7 @@ struct Shared {
     agent_end: Arc<Watched<Option<Result<(), NodeError>>>>,
 }
 
-/// Shows a game to ROS 2 until it is over.
+/// Publishes a game to ROS 2 until it is over.
 ///
 /// # Errors
 /// [`RosError`], including the loss of the sim.
@@ -254,7 +254,7 @@ fn drive(
     }
     let (ttl, incoming) = (settings.ttl, Arc::clone(&shared.incoming));
     let driver = move |boat: VehicleId| {
-        // The agent asks only for the boats that it was given.
+        // The agent requests only the boats that it was given.
         let cell = cells.get(&boat).map(Arc::clone).unwrap_or_default();
         Driver {
             boat,
@@ -289,7 +289,7 @@ fn drive(
         shared.agent_end.visit(|slot| *slot = Some(end));
     };
     let failed = |e: std::io::Error| BusError::Open {
-        what: "an agent's thread".to_owned(),
+        what: "start an agent's thread".to_owned(),
         reason: e.to_string(),
     };
     Ok(Some(NodeThread::start(body).map_err(failed)?))
@@ -356,7 +356,7 @@ impl Bridge {
         if let Some(reason) = self.shared.agent_news.visit(Option::take) {
             tell(News::Looking { reason: &reason });
         }
-        // Each power of ten, not each message: a hostile node could fill the terminal.
+        // Reported at each power of ten, not for each message: a hostile node could fill the terminal.
         if refused.total() > self.told.total().saturating_mul(10) {
             self.told = refused;
             tell(News::Refused { refused });

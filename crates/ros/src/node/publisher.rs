@@ -35,7 +35,7 @@ struct MotionTopics {
 }
 
 impl MotionTopics {
-    /// Topics below `prefix`, for example `blue_1` or `blue_1/truth`.
+    /// Topics under `prefix`, for example `blue_1` or `blue_1/truth`.
     fn open(graph: &mut Graph, node: &Node, prefix: &str) -> Result<MotionTopics, BusError> {
         Ok(MotionTopics {
             base_link: format!("{prefix}/base_link"),
@@ -70,7 +70,7 @@ pub(super) struct Publisher {
     frame: Topic<Frame>,
     /// The truth, by vehicle; empty if it is not published.
     truth: Vec<MotionTopics>,
-    /// What driven boats measure.
+    /// Measurements of driven boats.
     measured: BTreeMap<VehicleId, MotionTopics>,
     /// The pictures of driven boats' teams.
     pictures: BTreeMap<u8, Topic<Picture>>,
@@ -164,7 +164,7 @@ impl Publisher {
             .send(|| markers::game(&self.scenario, frame))
     }
 
-    /// What a team's driven boats have measured.
+    /// Measurements of a team's driven boats.
     pub(super) fn send_picture(&mut self, picture: &Picture) -> Result<(), BusError> {
         self.tick(picture.stamp)?;
         for boat in &picture.own {

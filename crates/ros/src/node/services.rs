@@ -13,9 +13,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often a worker without requests checks whether the bridge has ended.
+/// How often an idle worker checks whether the bridge has ended.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// Maximum number of queued requests; more are not answered.
+/// Maximum number of queued requests; further requests are dropped.
 const REQUESTS: usize = 16;
 
 const SET_BOOL: &str = "std_srvs/srv/SetBool";
@@ -33,8 +33,7 @@ const SERVICES: [(&str, &str, [Control; 2]); 5] = [
     ("/squall/end", TRIGGER, [Control::Stop, Control::Stop]),
 ];
 
-/// The request of `std_srvs/srv/SetBool`. The request of a trigger has one byte too, which means
-/// nothing.
+/// The request of `std_srvs/srv/SetBool`. A `Trigger` request is also one byte, which is ignored.
 #[derive(Deserialize)]
 struct Request {
     data: u8,
@@ -63,7 +62,7 @@ pub(super) fn open(
     refusals: &Arc<Watched<Refusals>>,
     stop: &Arc<AtomicBool>,
 ) -> Result<[NodeThread; 2], BusError> {
-    // Stops have their own queue: they wait for no other command.
+    // Stops have their own queue, so that they wait for no other command.
     let (stops, stops_asked) = inbox::<Asked>(REQUESTS);
     let (others, others_asked) = inbox::<Asked>(REQUESTS);
     for (service, type_name, commands) in SERVICES {
@@ -102,7 +101,7 @@ pub(super) fn open(
             }
         })
         .map_err(|e| BusError::Open {
-            what: "services".to_owned(),
+            what: "start the services".to_owned(),
             reason: e.to_string(),
         })
     };

@@ -1,4 +1,4 @@
-//! Out of play: retired boats.
+//! Boats out of play because they have retired.
 
 use crate::preset::aquaticus_2023;
 use crate::scene::{Scene, grabbed, lost};

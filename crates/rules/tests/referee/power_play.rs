@@ -10,7 +10,7 @@ fn disabled(vehicle: u16) -> Event {
     Event::Disabled(VehicleId(vehicle))
 }
 
-/// The drawn windows in time order: from, until, vehicle.
+/// The drawn windows in order of time: from, until, vehicle.
 fn windows(scene: &Scene, seed: u64) -> Vec<(SimTime, SimTime, usize)> {
     let standing = scene.referee.start(&mut Stream::new(seed, "rules"));
     let drawn = standing

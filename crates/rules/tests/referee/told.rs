@@ -124,7 +124,7 @@ fn step(scene: &mut Scene, words: &str) -> Told<()> {
             match what {
                 "tag" => asks.tag = true,
                 "grab" => asks.grab = true,
-                _ => return Err(format!("nobody asks for {what}")),
+                _ => return Err(format!("there is no request {what}")),
             }
         }
         ["wait", seconds] => {
@@ -186,7 +186,7 @@ fn played(told: &str) -> Told<()> {
     if looks > 0 {
         Ok(())
     } else {
-        Err("nothing is looked at".to_owned())
+        Err("there is no look".to_owned())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Long random walks: invariants of every look, whatever the boats do.
+//! Long random walks: invariants that hold at every look, whatever the boats do.
 
 use crate::mirror::Mirror;
 use crate::preset;
@@ -272,8 +272,8 @@ fn assert_lawful(
         } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
-            // In turn, a boat may be tagged after its grab, and a flag grabbed that the boundary
-            // has just brought home.
+            // Under sequential rules a boat may be tagged after its grab, and a flag grabbed just after the boundary
+            // has sent it home.
             assert!(
                 !before.vehicles[vehicle.index()].tagged
                     && !boat.disabled
@@ -341,7 +341,7 @@ proptest! {
                 let want = before.score[team.index()] + points(referee, events, team);
                 assert_eq!(after.score[team.index()], want, "team {}", team.0);
             }
-            assert!(!before.over || (before == after && events.is_empty()), "it went on after the end");
+            assert!(!before.over || (before == after && events.is_empty()), "it continued after the end");
         });
     }
 

@@ -132,7 +132,7 @@ impl ScenarioFile for Scenario {
     }
 }
 
-/// The radio links; the station stands in the middle of the field if the file names no other place.
+/// The radio links; the station is in the middle of the field if the file names no other place.
 fn link(document: &Document<raw::Game>, field: &Field) -> Option<Link> {
     let mut link = document.raw.link.clone();
     if !document.has("link.station") {
@@ -422,7 +422,7 @@ impl Fleet<'_> {
         let total = self.entries.len() + count;
         if total > VEHICLES_MAX {
             let message = format!(
-                "there are {total} vehicles up to this one, expected at most {VEHICLES_MAX}"
+                "{total} vehicles up to and including this one, expected at most {VEHICLES_MAX}"
             );
             self.document.note(path, message);
         }

@@ -31,7 +31,7 @@ pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
             return Err((
                 j,
                 format!(
-                    "polygon's side {} meets its side {}, expected no crossing",
+                    "polygon is self-intersecting: sides {} and {} cross",
                     i + 1,
                     j + 1
                 ),

@@ -16,7 +16,7 @@ use rules::field::Field;
 
 /// Margin of a default rectangle on either side, m.
 const MARGIN_M: f64 = 2.0;
-/// Maximum share of the rectangle for the boats' gaps as squares. Sequential placement jams at
+/// Maximum fraction of the rectangle for the boats' gaps as squares. Sequential placement jams at
 /// about 0.69.
 const FULLEST: f64 = 0.5;
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ObservationSpace {
-    /// Those of Pyquaticus, in its order: 21 of the own boat and 8 of each other boat, each from -1
+    /// Those of Pyquaticus, in its order: 21 of the boat itself and 8 of each other boat, each from -1
     /// to 1.
     Pyquaticus,
     /// Those of Pyquaticus from November 2023 to January 2024: `pyquaticus` without the scores, and
@@ -109,7 +109,7 @@ impl ObservationSpace {
     }
 }
 
-/// The names of the own boat's values, then of each other boat's: `mate_1_speed`, `enemy_2_speed`.
+/// The names of the boat's own values, then of each other boat's: `mate_1_speed`, `enemy_2_speed`.
 fn names_of(own: &[&str], other: &[&str], mates: usize, enemies: usize) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));

@@ -15,7 +15,7 @@ pub enum Edition {
 }
 
 impl Edition {
-    /// The names of the own boat's values.
+    /// The names of the boat's own values.
     pub fn own_names(self) -> impl Iterator<Item = &'static str> {
         self.named(&OWN_NAMES)
     }

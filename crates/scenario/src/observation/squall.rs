@@ -6,7 +6,7 @@ pub(super) const VERSION: u32 = 1;
 /// Number of values of another boat: presence, position, motion, state.
 pub const OTHER: usize = 16;
 
-/// Values of the own boat, its goals and the game.
+/// Values of the boat itself, its goals and the game.
 pub(super) const OWN_NAMES: [&str; 44] = [
     "position_ahead",
     "position_port",

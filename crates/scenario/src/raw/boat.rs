@@ -50,10 +50,10 @@ pub(crate) struct Thruster {
     /// Time constant of the response, s.
     #[schemars(range(min = 0, max = 60), extend("default" = 0.2))]
     pub(crate) lag_s: f64,
-    /// Maximum rate of change of the commanded setting, shares of full ahead per second.
+    /// Maximum rate of change of the commanded setting, fractions of full ahead per second.
     #[schemars(range(min = 0.001, max = 1000), extend("default" = 10))]
     pub(crate) slew_per_s: f64,
-    /// Commands below this share of full ahead have no effect.
+    /// Commands below this fraction of full ahead have no effect.
     #[schemars(range(min = 0, max = 0.9), extend("default" = 0))]
     pub(crate) deadband: f64,
     #[serde(flatten)]

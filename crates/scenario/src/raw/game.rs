@@ -18,7 +18,7 @@ pub struct Game {
     pub(crate) rules: FilePath,
     /// Sea file. Default: fresh water at rest.
     pub(crate) sea: Option<FilePath>,
-    /// Boat file of all vehicles that name none.
+    /// Boat file of all vehicles without their own.
     pub(crate) boat: Option<FilePath>,
     /// Radio links between minds and boats. Default: no delay, no loss.
     #[schemars(extend("x-drawn" = true))]
@@ -41,14 +41,14 @@ pub struct Game {
     /// Time between decisions of a mind, s; a multiple of `tick_s`.
     #[schemars(range(min = 0.001, max = 10), extend("default" = 0.1))]
     pub(crate) decision_s: f64,
-    /// Lockstep: wall-clock time that the sim waits for a mind before it counts as lost, s.
+    /// Lockstep: wall-clock time that the sim waits for a mind before treating it as lost, s.
     #[schemars(range(min = 0.001, max = 3600), extend("default" = 5))]
     pub(crate) patience_s: f64,
     /// Real time: maximum age of an order, in simulated time, before the boat holds, s.
     #[schemars(range(min = 0.01, max = 3600), extend("default" = 1))]
     pub(crate) order_ttl_s: f64,
     /// The two teams; the first has the end at the field's `corner`.
-    #[schemars(length(equal = 2), extend("x-expected" = "exactly two [[team]]"))]
+    #[schemars(length(equal = 2), extend("x-expected" = "exactly two [[team]] tables"))]
     pub(crate) team: Vec<Team>,
     /// Single boats. They precede all fleets in processing order.
     pub(crate) vehicle: Vec<Vehicle>,
@@ -60,7 +60,7 @@ pub struct Game {
 pub(crate) struct Team {
     /// Name.
     pub(crate) name: Name,
-    /// Strategy of its boats that name none: a path, or a name in `strategies/`.
+    /// Strategy of its boats without their own: a path, or a name in `strategies/`.
     pub(crate) strategy: Option<FilePath>,
 }
 

@@ -1,6 +1,6 @@
 //! Scenario files as typed, where the checked types differ: `check` converts them.
 //!
-//! All other types of a scenario are both. Every key is declared once, here or there; `schema`
+//! All other types of a scenario serve as both. Every key is declared once, here or there; `schema`
 //! describes how. The doc comments are the descriptions in the JSON Schemas and the reference, so
 //! they are written for authors of files.
 
@@ -25,7 +25,7 @@ use super::diagnostics::NAME_PATTERN;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The path of another file, relative to the one it stands in. Empty where it was wrong or missing.
+/// The path of another file, relative to the file that contains it. Empty where it was wrong or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("minLength" = 1, "x-expected" = "the path of a file"))]
 pub struct FilePath(pub(crate) String);

@@ -128,7 +128,7 @@ pub(crate) struct Current {
     /// Mean speed, m/s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     pub(crate) speed_m_s: f64,
-    /// Compass bearing it flows to, degrees.
+    /// Compass bearing it flows towards, degrees.
     #[schemars(range(min = -360, max = 360), extend("default" = 0))]
     pub(crate) toward_deg: f64,
     /// A random variation of the mean speed.

@@ -22,7 +22,7 @@ pub struct Behaviour {
     /// to 300.
     #[schemars(range(min = 0, max = 1000), extend("default" = 100))]
     pub weight: Parameter,
-    /// It completes after running this long, s. Default: never.
+    /// It completes after running for this long, s. Default: never.
     #[schemars(range(min = 0, max = 86400))]
     pub duration_s: Option<Parameter>,
     /// Whether it restarts after completion.

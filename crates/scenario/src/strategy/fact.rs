@@ -30,7 +30,7 @@ impl Kind {
     }
 }
 
-/// A value of the game, as the own boat knows it.
+/// A value of the game, as the boat knows it.
 #[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ pub enum Fact {
     Disabled,
     /// The boat may tag now: it is in play, and its cooldown is over.
     CanTag,
-    /// An enemy carries an own flag.
+    /// An enemy carries one of the team's flags.
     FlagTaken,
     /// The boat or a mate carries a flag.
     EnemyFlagTaken,
@@ -89,7 +89,7 @@ pub enum Fact {
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Measure {
-    /// Distance from the own boat, or between two places, m; 1e9 if unknown.
+    /// Distance from the boat, or between two places, m; 1e9 if unknown.
     Distance,
     /// Rate at which that distance shrinks, m/s; 0 if unknown.
     Closing,
@@ -101,7 +101,7 @@ pub enum Measure {
     OnOwnSide,
     /// Whether it is a tagged boat.
     IsTagged,
-    /// Number of mates nearer to it than the own boat, except tagged ones and carriers.
+    /// Number of mates nearer to it than the boat, except tagged ones and carriers.
     MatesNearer,
 }
 

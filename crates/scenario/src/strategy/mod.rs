@@ -1,4 +1,4 @@
-//! Strategies: the play of a team's boats, as data.
+//! Strategies: how a team's boats play, as data.
 //!
 //! A [`Strategy`] assigns [`Program`]s to the boats of a team. One boat's helm follows a program:
 //! variables, a tree of modes, behaviours, and rules that assign values to variables.
@@ -92,8 +92,8 @@ pub struct Helm {
     /// Maximum speed, m/s, at most the boat's. Default: the boat's.
     #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: Option<f64>,
-    /// Bonus for decisions near the last one (30 degrees, 0.75 m/s), as a share of all weights
-    /// except those of `op_region`; more would outweigh safety.
+    /// Bonus for decisions near the last one (30 degrees, 0.75 m/s), as a fraction of all weights except those of
+    /// `op_region`; more would outweigh safety.
     #[schemars(range(min = 0, max = 0.1), extend("default" = 0))]
     pub hysteresis: f64,
     /// Whether to correct for estimated drift and heading error, so that course and speed over the
@@ -109,7 +109,7 @@ pub struct Variable {
     pub name: String,
     /// The kind of its values.
     pub kind: Kind,
-    /// Its initial value: see [`Expression`] for how truths and texts are numbers.
+    /// Its initial value: see [`Expression`] for how Booleans and texts become numbers.
     pub initial: f64,
     /// Whether it is shared with the team.
     pub shared: bool,
@@ -153,7 +153,7 @@ pub struct Trigger {
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Who {
-    /// The own boat.
+    /// The boat itself.
     I,
     /// A mate.
     Mate,

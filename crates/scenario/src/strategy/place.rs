@@ -27,13 +27,13 @@ pub enum Place {
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mark {
-    /// Home of the own flag.
+    /// Home of one's own flag.
     OwnFlag,
     /// Home of the enemy's flag, if the flag is there.
     EnemyFlag,
     /// Where a flag must be brought.
     CapturePlace,
-    /// Where a tagged boat is untagged; the enemy's flag while it must leave that place first.
+    /// Where a tagged boat is untagged; the enemy's flag while the boat must first leave that place.
     UntagPlace,
 }
 
@@ -46,14 +46,14 @@ pub enum Boat {
     NearestEnemy,
     /// Nearest untagged enemy on the team's side.
     NearestIntruder,
-    /// Untagged enemy nearest to an own flag.
+    /// Untagged enemy nearest to one of the team's flags.
     NearestAttacker,
     /// Enemy, tagged or not, nearest to the enemy's flag.
     NearestDefender,
     /// Untagged enemy on the team's side assigned to this boat. Starting with the enemy nearest to
-    /// an own flag, each goes to the boat of the team that meets it soonest, one boat per enemy.
+    /// one of the team's flags, each goes to the boat of the team that meets it soonest, one boat per enemy.
     AssignedIntruder,
-    /// Enemy that carries an own flag.
+    /// Enemy that carries one of the team's flags.
     FlagCarrier,
     /// Enemy of the same rank; ranks repeat if there are fewer enemies.
     Opponent,

@@ -18,15 +18,15 @@ pub struct Policy {
     #[serde(default)]
     #[schemars(with = "Option<String>", extend("x-expected" = "the name of a variable with texts"))]
     pub sets: Option<u16>,
-    /// Whether each action is drawn by the model's probabilities, by the game's seed, instead of
-    /// the likeliest being taken. Only for a model with logits.
+    /// Whether each action is sampled from the model's probabilities, using the game's seed, instead of taking the most
+    /// likely one. Only for a model with logits.
     #[serde(default)]
     pub sampled: bool,
     /// Whether the model's actions are the boat's orders, as in Pyquaticus. Modes, rules and other
     /// behaviours then have no effect, and nothing keeps the boat safe; a tagged boat drives home.
     #[serde(default)]
     pub direct: bool,
-    /// Who proposes without a model.
+    /// Source of proposals without a model.
     #[schemars(extend("default" = "program"))]
     pub by: Proposer,
     /// Maximum age of an external proposal, s.
@@ -59,7 +59,7 @@ struct ModelKeys {
     period_s: Option<f64>,
 }
 
-/// Who proposes without a model.
+/// Source of proposals without a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Proposer {

@@ -1,4 +1,4 @@
-//! The background of the chart below the field: an image of the site, or its shoreline as GeoJSON.
+//! The background of the chart beneath the field: an image of the site, or its shoreline as GeoJSON.
 //!
 //! Both use WGS 84: GeoJSON has no other reference system since RFC 7946, and an image has a world
 //! file. The page places them relative to the field's datum.
@@ -68,8 +68,7 @@ impl Background {
             }
             _ => {
                 return Err(bad(
-                    "has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"
-                        .to_owned(),
+                    "unknown format, expected PNG or JPEG with a world file, or GeoJSON".to_owned(),
                 ));
             }
         };
@@ -425,9 +424,7 @@ mod tests {
         );
         let svg = read_in(&[("site.svg", b"<svg onload='alert(1)'/>")]).expect_err("no SVG");
         assert!(
-            svg.contains(
-                "has an unknown format, expected PNG or JPEG with a world file, or GeoJSON"
-            ),
+            svg.contains("unknown format, expected PNG or JPEG with a world file, or GeoJSON"),
             "{svg}"
         );
     }

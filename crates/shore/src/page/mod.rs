@@ -50,7 +50,7 @@ pub struct PageSettings {
     /// Additional host names of the server. They require a token, because their users come from
     /// other machines.
     pub hosts: Vec<String>,
-    /// The background drawn below the field.
+    /// The background drawn beneath the field.
     pub background: Option<Background>,
     /// Set by the caller to stop the server.
     pub stop: Arc<AtomicBool>,
@@ -200,8 +200,7 @@ fn listener(
     if token.as_ref().is_some_and(String::is_empty) {
         return Err(PageError::EmptyToken);
     }
-    // Watching is free, acting is not. TLS is left to a proxy: nobody maintains certificates for a
-    // laptop on a dock.
+    // Watching is free, acting is not. TLS is left to a proxy: no one maintains certificates for a laptop on a dock.
     if !listen.ip().is_loopback() && token.is_none() {
         return Err(PageError::Open(*listen));
     }

@@ -38,7 +38,7 @@ pub(super) struct Policy {
     pub(super) observed: Vec<(String, f32)>,
 }
 
-/// Number of actions listed per policy, the likeliest first.
+/// Number of actions listed per policy, most likely first.
 const ACTIONS: usize = 4;
 
 /// An objective function.

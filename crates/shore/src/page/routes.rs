@@ -109,9 +109,9 @@ pub(super) async fn serve(
         report,
         background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
-        // Operators have separate slots: an E-stop must not queue behind observers. With too many
-        // pages, none is refused. The idlest one is displaced and reconnects after half a minute,
-        // so that one page too many does not make all of them reconnect.
+        // Operators have separate slots: an E-stop must not queue behind observers. With too many pages, none is
+        // refused. The longest-idle page is displaced and reconnects after half a minute, so that one page too many
+        // does not make all of them reconnect.
         operators: Connections::new(OPERATORS_MAX),
     };
     let site = Router::new()
@@ -217,7 +217,7 @@ async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response
     }
 }
 
-/// The background below the field; `null` without one.
+/// The background beneath the field; `null` without one.
 fn background_file(background: Option<&Background>, path: &str) -> Option<Response<Body>> {
     let image = background.and_then(|background| background.image.as_ref());
     match path {

@@ -11,7 +11,7 @@ use tungstenite::{Error, Message, WebSocket};
 
 /// Limit of every wait.
 const LIMIT: Duration = Duration::from_secs(30);
-/// How long silence must last to count.
+/// How long silence must last to count as such.
 const QUIET: Duration = Duration::from_secs(1);
 
 pub(crate) struct Client {

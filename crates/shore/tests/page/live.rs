@@ -1,4 +1,4 @@
-//! A game on a network, shown on pages: with a test sim, over the real network.
+//! A game on a network, shown on pages, with a test sim and over the real network.
 
 use super::client::{Client, get};
 use super::source::{frame, own_boat, report, scenario, seq_of};
@@ -28,7 +28,7 @@ use std::time::Duration;
 const LIMIT: Duration = Duration::from_secs(30);
 const BLUE_ONE: VehicleId = VehicleId(0);
 
-/// A sim that plays nothing and publishes what a test requests.
+/// A sim that simulates nothing and publishes what a test requests.
 pub(crate) struct Sim {
     pub(crate) bus: Bus,
     pub(crate) port: u16,
@@ -261,7 +261,7 @@ fn events_come_with_frames_and_missed_ones_are_asked_for() {
         .visit(|events| *events = vec![outcome(2), outcome(4)]);
     sim.show(1, &[tagged(2)]);
     client.until("events", |events| events["events"][0]["tick"] == 2);
-    // The frame in between is lost with its event.
+    // The frame in between is lost, along with its event.
     sim.show(3, &[]);
     let news = client.until("events", |events| {
         events["events"]
@@ -412,7 +412,7 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
 fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
     let mut other = open_viewer(&page);
-    assert!(!sim.pictures.is_heard(), "no page selects a boat yet");
+    assert!(!sim.pictures.is_heard(), "no page has selected a boat yet");
     client.send(r#"{"do":"select","vehicle":"blue_one","functions":true}"#);
     other.send(r#"{"do":"select","vehicle":"red_one","functions":false}"#);
     let helm = client.until("helm", |helm| helm["report"]["mode"] == "functions:true");
@@ -423,11 +423,9 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     let none = other.until("helm", |_| true);
     assert_eq!(
         (&none["report"], &none["reason"]),
-        (&json!(null), &json!("no agent runs red_one now"))
+        (&json!(null), &json!("no agent is running red_one now"))
     );
-    wait_until("the picture of its team is wanted", || {
-        sim.pictures.is_heard()
-    });
+    wait_until("its team's picture is needed", || sim.pictures.is_heard());
     let stamp = Stamp {
         valid_ns: SimTime::from_s(2.0),
         seq: 20,
@@ -446,7 +444,9 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     );
     client.send(r#"{"do":"select","vehicle":null}"#);
     // The other page selects a red boat, so blue's picture is no longer needed.
-    wait_until("no page selects it any more", || !sim.pictures.is_heard());
+    wait_until("no page has it selected any more", || {
+        !sim.pictures.is_heard()
+    });
     sim.close();
 }
 

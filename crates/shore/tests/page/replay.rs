@@ -1,4 +1,4 @@
-//! A recording replayed on pages.
+//! Replaying a recording on pages.
 
 use super::source::{Rememberer, bytes_of_recording, recorded, recorded_in, seq_of, two_minutes};
 use super::{open_viewer, page, visit};

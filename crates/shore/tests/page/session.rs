@@ -39,7 +39,7 @@ impl Viewer for Ear {
     }
 }
 
-/// The numbers of the frames sent to a page that draws nothing.
+/// The numbers of frames sent to a page that draws nothing.
 fn frames(messages: &[Message]) -> Vec<u64> {
     let bytes = messages.iter().filter_map(|message| match message {
         Message::Binary(bytes) if bytes.first() == Some(&1) => Some(bytes),
@@ -55,7 +55,7 @@ fn a_page_that_draws_nothing_gets_two_frames() {
     let messages: Vec<Message> = std::iter::from_fn(|| Some(client.next()))
         .take(20)
         .collect();
-    assert_eq!(frames(&messages).len(), 2, "after seconds of playing");
+    assert_eq!(frames(&messages).len(), 2, "after seconds of playback");
     client.send(r#"{"do":"control","what":"pause"}"#);
     let paused = client.until("player", |player| player["playing"] == false);
     assert!(frames(&client.rest()).is_empty());

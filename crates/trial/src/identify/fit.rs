@@ -32,7 +32,7 @@ pub struct Quality {
     pub unit: &'static str,
     /// Root mean square of the residuals.
     pub rms: f64,
-    /// Share of the measurements' variance that the model explains.
+    /// Fraction of the measurements' variance that the model explains.
     pub r_squared: f64,
 }
 
@@ -66,7 +66,7 @@ pub struct Fit {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoFit {
     /// An unknown parameter name.
-    #[error("{0} is not a parameter, expected some of {list}", list = names().join(", "))]
+    #[error("{0} is not a parameter, expected one or more of {list}", list = names().join(", "))]
     Unknown(String),
     /// The boat has no such parameter.
     #[error("the boat has no {0}")]
@@ -91,7 +91,7 @@ const CONFUSED: f64 = 0.95;
 const NORMAL_975: f64 = 1.96;
 /// Number of searches, each with channel weights from the previous residuals.
 const WEIGHINGS: usize = 3;
-/// Least standard deviation of a channel, as a share of the initial guess: a log without noise
+/// Minimum standard deviation of a channel, as a fraction of the initial guess: a log without noise
 /// comes from a simulation.
 const LEAST_SIGMA: f64 = 1e-4;
 

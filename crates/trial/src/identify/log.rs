@@ -62,7 +62,7 @@ impl Log {
         for needed in [HEADING, SURGE, YAW_RATE] {
             if columns[needed].is_none() {
                 let message = format!(
-                    "no column {} among {}",
+                    "missing column {}; columns found: {}",
                     CHANNELS[needed].1,
                     sheet.heads().join(", ")
                 );

@@ -2,7 +2,7 @@
 
 #![expect(
     deprecated,
-    reason = "ground stations send the older commands, too, and ArduPilot takes them"
+    reason = "ground stations also send the older commands, and ArduPilot accepts them"
 )]
 
 use super::ArduPilot;

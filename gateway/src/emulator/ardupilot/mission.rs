@@ -293,7 +293,7 @@ fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
 /// The subject of a message: missions, fences or rally points. Acknowledgements need no reply.
 fn type_of(message: &MavMessage) -> Option<MavMissionType> {
     Some(match message {
-        // Of everything, only the mission exists.
+        // Only the mission exists.
         MavMessage::MISSION_CLEAR_ALL(all)
             if all.mission_type == MavMissionType::MAV_MISSION_TYPE_ALL =>
         {

@@ -75,8 +75,8 @@ impl ArduPilot {
             frame: LocalFrame::new(datum),
             framer: Framer::new(),
             writer: Writer::new(SYSTEM, AUTOPILOT),
-            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started belongs to
-            // the gateway, and rests.
+            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started belongs to the gateway, and
+            // stays at rest.
             mode: RoverMode::Hold,
             is_armed: false,
             set_points: SetPoints::default(),
@@ -148,7 +148,7 @@ impl ArduPilot {
         };
         let pose = own.nav.pose();
         if self.mode == RoverMode::Guided && self.set_points.expires(now) {
-            // A boat keeps station here, where a car stops.
+            // Here a boat keeps station, whereas a car stops.
             self.autopilot.begin(pose.at);
             self.say(MavSeverity::MAV_SEVERITY_WARNING, FORGOTTEN);
         }
@@ -191,7 +191,7 @@ impl ArduPilot {
 
     #[expect(
         deprecated,
-        reason = "ground stations send SET_MODE and REQUEST_DATA_STREAM all the same"
+        reason = "ground stations still send SET_MODE and REQUEST_DATA_STREAM"
     )]
     fn apply(&mut self, now: SimTime, received: &Received) {
         let Received {
@@ -209,7 +209,7 @@ impl ArduPilot {
         if !is_for_us || from == (self.system(), AUTOPILOT) {
             return;
         }
-        // Rover obeys commands from anybody, but its failsafe and manual control accept only one
+        // Rover obeys commands from anyone, but its failsafe and manual control accept only one
         // ground station.
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {

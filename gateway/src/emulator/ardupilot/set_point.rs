@@ -154,7 +154,7 @@ impl SetPoints {
     /// The reason if Rover ignores it.
     #[expect(
         deprecated,
-        reason = "ground stations send the frames of the boat, and Rover takes them"
+        reason = "ground stations send the boat's frames, and Rover accepts them"
     )]
     pub(super) fn take_local(
         &mut self,

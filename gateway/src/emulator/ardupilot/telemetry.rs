@@ -2,7 +2,7 @@
 
 #![expect(
     deprecated,
-    reason = "ground stations ask for streams by REQUEST_DATA_STREAM all the same"
+    reason = "ground stations still request streams by REQUEST_DATA_STREAM"
 )]
 
 use super::ArduPilot;

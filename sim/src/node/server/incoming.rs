@@ -43,8 +43,7 @@ impl GameServer<'_> {
         next.into_iter().for_each(|incoming| self.take_in(incoming));
     }
 
-    /// Answers some of the waiting questions. Answers take time, and the sender can wait or ask
-    /// again.
+    /// Answers some of the waiting questions. Answering takes time, and the sender can wait or ask again.
     fn answer(&mut self) {
         let questions: Vec<(Question, Query)> = std::iter::from_fn(|| self.questions.take_now())
             .take(ANSWERS_MAX)
@@ -125,7 +124,7 @@ impl GameServer<'_> {
         }
     }
 
-    /// Records how long a team's agents took to answer the picture of a decision.
+    /// Records how long a team's agents took to reply to the picture of a decision.
     fn note_round_trip(&mut self, vehicle: VehicleId, seq: u64) {
         let team = self.contest.scenario().team_of(vehicle);
         let Some(throttle) = self.throttles.get_mut(team.index()) else {

@@ -190,7 +190,7 @@ fn a_game_without_real_boats_is_stopped_when_its_sim_says_so() {
     let (mut orders, start) = orders(&[]);
     let number = orders.ask(start, None, StopCommand::EStop);
     assert_eq!(orders.due(start).len(), 1);
-    assert_eq!(orders.unfinished(), ["the sim does not answer"]);
+    assert_eq!(orders.unfinished(), ["the sim does not respond"]);
     orders.sim_answered(start + MS(20), number, Ok(()));
     assert!(orders.unfinished().is_empty());
     assert_eq!(orders.take_news(), [StopNews::Sim(Ok(MS(20)))]);

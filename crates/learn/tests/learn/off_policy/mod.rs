@@ -11,7 +11,7 @@ use learn::off_policy::dqn::DqnLearner;
 use learn::off_policy::td3::{NUMBERS, Td3Learner, drawn};
 use primitives::stream::Stream;
 
-/// Random transitions with observations of three numbers; every third does not count.
+/// Random transitions with observations of three numbers; every third one does not count.
 fn random<A>(count: usize, stream: &mut Stream, action: impl Fn(&mut Stream) -> A) -> Minibatch<A> {
     let mut rows = || (0..3 * count).map(|_| stream.normal() as f32).collect();
     Minibatch {
@@ -31,7 +31,7 @@ fn assert_slopes<L: Clone>(
     gradient_and_loss: impl Fn(&L) -> (Vec<f32>, f32),
 ) {
     const STEP: f32 = 1e-2;
-    // For slopes of about 0.1 from finite differences in single precision.
+    // For slopes of about 0.1 by finite differences in single precision.
     const TOLERANCE: f32 = 1e-3;
     let (gradient, _) = gradient_and_loss(learner);
     assert!(

@@ -1,4 +1,4 @@
-//! Small problems with known solutions, learnt from random transitions.
+//! Small problems with known solutions, learned from random transitions.
 
 use crate::fixture;
 use learn::nn::Trace;
@@ -92,8 +92,8 @@ fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
         }
         assert!(place.abs() < 0.1, "from {start} to {place}");
     }
-    // No further cost arises in the middle. At the end of the line it is one step's cost and those
-    // that follow.
+    // No further cost arises in the middle. At the end of the line, one step's cost and the costs of those that follow
+    // arise.
     let value = |place: f32| {
         let mut trace = Trace::default();
         learner.critics[0].forward(&[place, (-place / 0.3).clamp(-1.0, 1.0), 0.5], &mut trace);

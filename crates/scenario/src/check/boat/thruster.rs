@@ -53,8 +53,7 @@ fn table(document: &Document<raw::Boat>, rows: &[raw::SettingAndThrust]) -> Thru
         }
         let ends = [points.first(), points.last()].map(|end| end.map(|end| end.0));
         if ends != [Some(-1.0), Some(1.0)] {
-            let message =
-                "table_pct_newton does not span the settings, expected -100 first and 100 last";
+            let message = "table_pct_newton does not cover the full range of settings, expected -100 first and 100 last";
             document.note(path, message);
         }
         if !points.contains(&(0.0, 0.0)) {

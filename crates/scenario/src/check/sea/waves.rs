@@ -7,7 +7,7 @@ use primitives::math;
 
 /// Maximum steepness (height over length at the peak); steeper waves break.
 const STEEPEST: f64 = 0.08;
-/// Maximum height as a share of the depth; higher waves break.
+/// Maximum height as a fraction of the depth; higher waves break.
 const HIGHEST: f64 = 0.6;
 
 pub(super) fn waves(document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<Waves> {

@@ -293,8 +293,9 @@ fn in_modes(scope: &Scope<'_>, path: &str, modes: &[Mode], given: Option<&[Json]
             None => {
                 let names: Vec<&str> = modes.iter().map(|mode| mode.name.as_str()).collect();
                 let expected = listed(name, &names);
-                let message = format!("has {name:?}, expected one of the modes {expected}");
-                scope.note(&format!("{path}.in.{i}"), &message);
+                let message =
+                    format!("`in` contains {name:?}, expected one of the modes {expected}");
+                scope.document.note(&format!("{path}.in.{i}"), message);
             }
         }
     }

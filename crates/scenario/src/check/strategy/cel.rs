@@ -34,7 +34,7 @@ impl Parsed {
 pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str) -> Option<Parsed> {
     let length = text.chars().count();
     if length > LONGEST {
-        let message = format!("{key} is {length} characters long, expected at most {LONGEST}");
+        let message = format!("`{key}` is {length} characters long, expected at most {LONGEST}");
         diagnostics.note(at, message);
         return None;
     }
@@ -58,7 +58,7 @@ pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str)
             let start = byte_at(text, error.pos);
             let at = offsets.get(start).or(offsets.last()).copied().unwrap_or(at);
             let complaint = complaint(&error.msg, text.get(start..).unwrap_or_default());
-            diagnostics.note(at, format!("{key} {complaint}"));
+            diagnostics.note(at, format!("`{key}` {complaint}"));
             None
         }
     }
@@ -83,9 +83,9 @@ fn complaint(message: &str, rest: &str) -> String {
         let wanted = if message.starts_with("expected") {
             message
         } else {
-            "expected a value there"
+            "expected a value"
         };
-        return format!("ends too early, {wanted}");
+        return format!("ends unexpectedly, {wanted}");
     }
     let token = token(rest);
     let guess = match token {
@@ -97,19 +97,19 @@ fn complaint(message: &str, rest: &str) -> String {
     };
     match message {
         _ if message.contains("expecting <EOF>") => {
-            format!("has {token:?} here, expected an operator or the end{guess}")
+            format!("contains {token:?}, expected an operator or the end{guess}")
         }
         "unexpected token" | "unexpected character" => {
-            format!("has {token:?} here, expected a value{guess}")
+            format!("contains {token:?}, expected a value{guess}")
         }
         _ if message.starts_with("unexpected single") => {
-            format!("has {token:?} here, expected an operator{guess}")
+            format!("contains {token:?}, expected an operator{guess}")
         }
         _ if message.starts_with("reserved identifier") => {
-            format!("has {token:?} here, expected a name that CEL does not reserve")
+            format!("contains {token:?}, expected a name that CEL does not reserve")
         }
-        _ if message.starts_with("expected") => format!("has {token:?} here, {message}"),
-        _ => format!("has {token:?} here: {message}"),
+        _ if message.starts_with("expected") => format!("contains {token:?}, {message}"),
+        _ => format!("contains {token:?}: {message}"),
     }
 }
 

@@ -45,7 +45,7 @@ struct Reader<'a, 'b> {
 impl Reader<'_, '_> {
     /// Reports a fault of a part.
     fn refuse<T>(&self, part: &IdedExpr, message: &str) -> Option<T> {
-        let message = format!("{} {message}", self.key);
+        let message = format!("`{}` {message}", self.key);
         let diagnostics = &self.scope.document.loader.diagnostics;
         diagnostics.note(self.parsed.place(part), message);
         None
@@ -62,12 +62,12 @@ impl Reader<'_, '_> {
             "a number"
         };
         let found = in_words(&expression, &found);
-        self.refuse(part, &format!("has {found} here, expected {wanted}"))
+        self.refuse(part, &format!("contains {found}, expected {wanted}"))
     }
 
     fn any(&mut self, part: &IdedExpr) -> Option<Read> {
         if self.depth > DEEPEST {
-            let message = format!("is nested too deeply here, expected at most {DEEPEST} levels");
+            let message = format!("is nested too deeply, expected at most {DEEPEST} levels");
             return self.refuse(part, &message);
         }
         match &part.expr {
@@ -94,7 +94,7 @@ impl Reader<'_, '_> {
         let measures = Measure::names().join("(), ");
         self.refuse(
             part,
-            &format!("has {what} here, expected only {allowed} and the measures {measures}()"),
+            &format!("contains {what}, expected only {allowed} and the measures {measures}()"),
         )
     }
 
@@ -110,7 +110,7 @@ impl Reader<'_, '_> {
                 Some((Expression::Constant(0.0), kind))
             }
             LiteralValue::Bytes(_) => self.not_allowed(part, "a string of bytes"),
-            LiteralValue::Null => self.not_allowed(part, "null"),
+            LiteralValue::Null => self.not_allowed(part, "\"null\""),
         }
     }
 
@@ -129,7 +129,7 @@ impl Reader<'_, '_> {
         }
         if Place::by_name(name).is_some() {
             let expected = format!("it in a measure, as in distance({name})");
-            let message = format!("has the place {name} here, expected {expected}");
+            let message = format!("contains the place {name}, expected {expected}");
             return self.refuse(part, &message);
         }
         let mut known = self.scope.names();
@@ -140,7 +140,7 @@ impl Reader<'_, '_> {
         };
         known.extend(Fact::names());
         let message = format!(
-            "has {name:?} here, which is unknown, expected a variable{listed}, a fact such as tagged or time_s, or a call \
+            "contains {name:?}, which is unknown, expected a variable{listed}, a fact such as tagged or time_s, or a call \
              such as distance(own_flag){}",
             did_you_mean(name, &known)
         );
@@ -180,11 +180,11 @@ impl Reader<'_, '_> {
             (_, operators::CONDITIONAL, [condition, then, otherwise]) => {
                 self.choice(condition, then, otherwise)
             }
-            (_, operators::MODULO, _) => self.not_allowed(part, "%"),
-            (_, operators::IN, _) => self.not_allowed(part, "in"),
+            (_, operators::MODULO, _) => self.not_allowed(part, "\"%\""),
+            (_, operators::IN, _) => self.not_allowed(part, "\"in\""),
             (_, operators::INDEX, _) => self.not_allowed(part, "an index [...]"),
             (_, "mates", [_]) if self.among_mates => {
-                let message = "has mates() within mates(), expected shared variables";
+                let message = "contains mates() within mates(), expected shared variables";
                 self.refuse(part, message)
             }
             (_, "mates", [condition]) => {
@@ -316,7 +316,7 @@ impl Reader<'_, '_> {
         };
         if let Kind::Text(_) = kind {
             let found = in_words(&first, &kind);
-            let message = format!("has {found} here, expected a number, or true or false");
+            let message = format!("contains {found}, expected a number, or true or false");
             return self.refuse(then, &message);
         }
         let second = self.of_kind(otherwise, &kind);

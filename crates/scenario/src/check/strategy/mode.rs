@@ -91,9 +91,10 @@ fn check_conditions(scope: &Scope<'_>, modes: &[Mode]) {
             (Some(_), None) => {
                 let part_of = |parent: usize| format!("part of {}", modes[parent].name);
                 let of = mode.parent.map_or_else(|| "mode".to_owned(), part_of);
-                let expected = "none: it is the fallback";
-                let message = format!("is given for {name}, the last {of}, expected {expected}");
-                scope.note(&path, &message);
+                let message = format!(
+                    "`when` is not allowed in {name}, the last {of}, which is the fallback"
+                );
+                scope.document.note(&path, message);
             }
             _ => {}
         }

@@ -80,7 +80,8 @@ fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
             match behaviour.weight.constant() {
                 Some(weight) if weight > most => {
                     let message = format!(
-                        "is {weight} in mode {path}, expected at most {most}, the weight of op_region or avoid_collision there"
+                        "is {weight} in mode {path}, expected at most {most}, the weight of op_region or \
+                        avoid_collision there"
                     );
                     scope.note(&format!("behaviour.{}.weight", behaviour.name), &message);
                 }

@@ -115,7 +115,7 @@ pub(super) fn operate(
                 .wait(ANSWER, |orders| orders.is_shown(&named, stop));
         }
         let mut state = at_work.state.lock();
-        // No page waits for a reply from a game that has gone.
+        // No page waits for a reply from a game that no longer exists.
         if state.generation == generation {
             let refused = match reply {
                 Ok(OperatorReply { refused, status }) => {
@@ -162,7 +162,7 @@ fn ask(
         bus.request_node(&topic::operate(&game.name, name), command, ANSWER);
     let reply = reply
         .map_err(|e| e.to_string())?
-        .ok_or_else(|| format!("no gateway of {name} answers"))?;
+        .ok_or_else(|| format!("no gateway of {name} is responding"))?;
     if reply.status.vehicle == name {
         Ok(reply)
     } else {

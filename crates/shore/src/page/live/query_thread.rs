@@ -96,7 +96,7 @@ impl QuerySchedule {
     }
 
     /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
-    /// process may run all minds, so after a long reply all rest. A paused game waits for no mind.
+    /// process may run all minds, so after a long reply none is queried for a while. A paused game waits for no mind.
     fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(turn.vehicle, (start, turn.functions));
         let share = if turn.is_listed { LIST_SHARE } else { SHARE };
@@ -172,8 +172,10 @@ impl QueryThread {
                 ..HelmAnswer::default()
             },
             Some(Ok(None)) => because(format!("the mind of {name} has no helm")),
-            Some(Err(_)) => because(format!("the mind of {name} runs another version of Squall")),
-            None => because(format!("no agent runs {name} now")),
+            Some(Err(_)) => because(format!(
+                "the mind of {name} is running another version of Squall"
+            )),
+            None => because(format!("no agent is running {name} now")),
         };
         self.shared
             .state

@@ -32,7 +32,7 @@ pub(super) struct PageViewer {
 struct Sent {
     /// The number of the game.
     generation: u64,
-    /// Why there is no game.
+    /// Why no game is shown.
     missing: String,
     events: super::event_log::EventCursor,
     /// Number of the last run state sent, and when.

@@ -60,7 +60,7 @@ struct Queue {
     answers: BTreeMap<Asker, (Query, String)>,
     /// The viewer and kind of the query in progress, unless the viewer has left.
     current: Option<Asker>,
-    /// The last one served, so that each gets its turn.
+    /// The last viewer served, so that each gets its turn.
     last: Asker,
     is_closed: bool,
 }
@@ -209,7 +209,7 @@ mod tests {
     impl Helms for SlowHelms {
         fn report(&mut self, _: VehicleId, _: u64, _: bool) -> HelmAnswer {
             self.0.send(()).expect("the test listens");
-            self.1.recv().expect("the test goes on");
+            self.1.recv().expect("the test continues");
             HelmAnswer::default()
         }
 
