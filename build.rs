@@ -1,4 +1,5 @@
-//! Tells a program which commit it is built from, both `squall` and `squall-gateway` in a folder below.
+//! Tells a program which commit it is built from, both `squall` and `squall-gateway` in a folder
+//! below.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -23,7 +24,8 @@ fn main() {
         "cargo::rustc-env=SQUALL_COMMIT={}",
         commit.as_deref().unwrap_or("unknown")
     );
-    // HEAD's log changes with a new commit; whether the sources are as committed may change with any of them.
+    // HEAD's log changes with a new commit; whether the sources are as committed may change with
+    // any of them.
     let watched = ["HEAD", "logs/HEAD"]
         .into_iter()
         .filter_map(|file| git(&root, &["rev-parse", "--git-path", file]));

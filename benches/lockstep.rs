@@ -3,9 +3,9 @@
 //!
 //! The ping measures the cost of transport alone: a hub publishes one message per team to N leaf
 //! processes and waits until each has answered. Topology and message sizes are the same, but there
-//! is no game. The cases alternate, so that both see the same machine. The benchmark prints medians, the cost of keys
-//! (TLS and rules by certificate), and the rate of the same game in one process. Boats with the strategy *idle* stay
-//! still, so that only the game's messages remain.
+//! is no game. The cases alternate, so that both see the same machine. The benchmark prints
+//! medians, the cost of keys (TLS and rules by certificate), and the rate of the same game in one
+//! process. Boats with the strategy *idle* stay still, so that only the game's messages remain.
 #![allow(
     clippy::print_stdout,
     clippy::disallowed_methods,

@@ -1,7 +1,8 @@
 //! The cost of recording: the rate of a 20-against-20 lockstep game with a recording, divided by
 //! its rate without.
 //!
-//! Games with and without a recording alternate, so that both see the same machine. The benchmark prints medians.
+//! Games with and without a recording alternate, so that both see the same machine. The benchmark
+//! prints medians.
 #![allow(
     clippy::print_stdout,
     clippy::disallowed_methods,

@@ -11,7 +11,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Plays the game of `scenario` that `seed` selects, without a network, until it is over or `stop`
-/// is set. Many minds decide on `threads` threads. Calls `look` before every decision and at the end.
+/// is set. Many minds decide on `threads` threads. Calls `look` before every decision and at the
+/// end.
 ///
 /// # Errors
 /// If the game cannot start.

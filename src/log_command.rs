@@ -23,8 +23,8 @@ mod turning;
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// Recording to analyse: a file, or part of a name listed by `squall runs` [default: the newest in runs]. Two with
-    /// --compare, any number with --quality
+    /// Recording to analyse: a file, or part of a name listed by `squall runs` [default: the newest
+    /// in runs]. Two with --compare, any number with --quality
     #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     files: Vec<PathBuf>,
     /// Prints only the events
@@ -46,8 +46,8 @@ pub(crate) struct Args {
     /// Compares two recordings, for example a game on the water and its simulation
     #[arg(long, conflicts_with = "events")]
     compare: bool,
-    /// Reports the quality of play in these recordings: order chatter, idle time, time near the edges, contacts and
-    /// circling
+    /// Reports the quality of play in these recordings: order chatter, idle time, time near the
+    /// edges, contacts and circling
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare"])]
     quality: bool,
     /// Finds the moments that changed the chance of winning most, and what each boat added, from

@@ -36,7 +36,8 @@ pub(crate) struct Args {
     /// Writes the policy to this folder as an entry for the Maritime Capture the Flag competition
     #[arg(long, value_name = "FOLDER", conflicts_with = "game")]
     submission: Option<PathBuf>,
-    /// With --submission: samples actions from their probabilities instead of taking the most likely one
+    /// With --submission: samples actions from their probabilities instead of taking the most
+    /// likely one
     #[arg(long, requires = "submission")]
     sampled: bool,
 }

@@ -15,8 +15,8 @@ pub(crate) struct Args {
     /// newest in runs]
     #[arg(value_name = "RECORDING", value_parser = recording_file::named)]
     pub(crate) file: Option<PathBuf>,
-    /// Reruns the game from its recorded inputs, without running the agents, and reports whether the result is
-    /// identical
+    /// Reruns the game from its recorded inputs, without running the agents, and reports whether
+    /// the result is identical
     #[arg(long)]
     pub(crate) check: bool,
 }

@@ -34,13 +34,14 @@ pub(crate) struct Args {
     /// Plays in this process, without a network; results are identical, byte for byte
     #[arg(long)]
     pub(crate) in_process: bool,
-    /// With --in-process: number of threads that compute the boats' decisions, for large fleets; does not affect
-    /// results [default: one per core]
+    /// With --in-process: number of threads that compute the boats' decisions, for large fleets;
+    /// does not affect results [default: one per core]
     #[arg(long, value_name = "N", requires = "in_process", value_parser = whole::<NonZeroUsize>(1, u64::MAX))]
     pub(crate) jobs: Option<NonZeroUsize>,
 }
 
-/// The command that shows a recorded game; in a build without the page, the command that analyses it.
+/// The command that shows a recorded game; in a build without the page, the command that analyses
+/// it.
 const LOOK: &str = if cfg!(feature = "network") {
     "squall replay"
 } else {

@@ -46,11 +46,12 @@ pub(crate) struct Args {
     /// Writes one line per entry to this file as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Stores the results in this folder and plays only the missing games, so that you can add entries or resume a
-    /// stopped tournament; `squall view FOLDER` shows it
+    /// Stores the results in this folder and plays only the missing games, so that you can add
+    /// entries or resume a stopped tournament; `squall view FOLDER` shows it
     #[arg(long, value_name = "FOLDER", conflicts_with = "quality")]
     league: Option<PathBuf>,
-    /// Also reports the quality of play: order chatter, idle time, time near the edges, contacts and circling
+    /// Also reports the quality of play: order chatter, idle time, time near the edges, contacts
+    /// and circling
     #[arg(long)]
     quality: bool,
 }

@@ -1,4 +1,5 @@
-//! `squall whatif`: what would have happened after a given time of a recorded game with other minds.
+//! `squall whatif`: what would have happened after a given time of a recorded game with other
+//! minds.
 
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;

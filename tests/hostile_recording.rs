@@ -1,4 +1,5 @@
-//! Every reader of recordings returns a result or an error, whatever a recording contains and however it is damaged.
+//! Every reader of recordings returns a result or an error, whatever a recording contains and
+//! however it is damaged.
 
 use analysis::table::TableError;
 use analysis::{Comparison, GameSeries, Summary, alog, table};

@@ -10,8 +10,8 @@ use std::any::Any;
 ///
 /// Identical pictures, words and proposals from the start must give identical orders on every
 /// machine. A mind reads no clock and takes randomness only from its own
-/// [`primitives::stream::Stream`]. A mind whose decisions are made by other programs is only for games paced by a
-/// clock.
+/// [`primitives::stream::Stream`]. A mind whose decisions are made by other programs is only for
+/// games paced by a clock.
 pub trait Mind: Any + Send {
     /// Decides on the newest picture.
     fn decide(&mut self, picture: &Picture) -> Order;

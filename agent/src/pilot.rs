@@ -27,8 +27,8 @@ enum Control {
     Helm(Box<HelmMind>, Option<Teacher>),
 }
 
-/// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's own actions serve as
-/// a demonstration.
+/// Makes a helm play in place of the policy that imitates it: actions are ignored, and the helm's
+/// own actions serve as a demonstration.
 #[derive(Clone)]
 struct Teacher {
     /// The option that each mode corresponds to, by mode index.
@@ -62,7 +62,8 @@ impl Pilot {
     /// Actions become orders directly. A tagged boat is steered home regardless, because it can do
     /// nothing else.
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
-        // The drift is estimated because it is part of the observation, even if nothing compensates for it.
+        // The drift is estimated because it is part of the observation, even if nothing compensates
+        // for it.
         let situation = Situation::new(scenario, vehicle, role_of(scenario, vehicle), true);
         Pilot::new(Control::Direct(Box::new(situation)), spaces)
     }
@@ -80,8 +81,8 @@ impl Pilot {
         )
     }
 
-    /// Lets the strategy's program control this boat. [`Pilot::taught`] returns the action that a policy would have had
-    /// to choose to match it. `options` maps each mode path to its option.
+    /// Lets the strategy's program control this boat. [`Pilot::taught`] returns the action that a
+    /// policy would have had to choose to match it. `options` maps each mode path to its option.
     pub fn by_teacher(
         scenario: &Scenario,
         vehicle: VehicleId,

@@ -150,8 +150,8 @@ impl Chosen {
 
 /// Converts a network output to an action: the most likely discrete action.
 fn action_of(model: &PolicyModel, output: &[f32]) -> Result<Action, PolicyFault> {
-    // Checked on each output: a network may overflow on inputs outside its training range, and the most likely action
-    // of NaN outputs would be the first.
+    // Checked on each output: a network may overflow on inputs outside its training range, and the
+    // most likely action of NaN outputs would be the first.
     if !output.iter().all(|number| number.is_finite()) {
         return Err(PolicyFault::NotFinite);
     }

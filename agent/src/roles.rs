@@ -17,8 +17,8 @@ pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     })
 }
 
-/// The role that `strategy` gives a vehicle with another strategy in the scenario, as if its whole team followed
-/// `strategy`.
+/// The role that `strategy` gives a vehicle with another strategy in the scenario, as if its whole
+/// team followed `strategy`.
 pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
     dealt(scenario, vehicle, strategy, |_| true)
 }

@@ -1,5 +1,5 @@
-//! Runs minds, decision by decision: delivers mates' messages, then policy proposals; lets every mind decide; then
-//! collects the messages to its team.
+//! Runs minds, decision by decision: delivers mates' messages, then policy proposals; lets every
+//! mind decide; then collects the messages to its team.
 //!
 //! No network and no clock. The arena, agent processes, replays and emulated boats all use this
 //! loop, so a game has the same bytes in each of them.
@@ -219,7 +219,8 @@ mod tests {
     use super::*;
     use primitives::SimTime;
 
-    /// Orders the proposed speed plus the values it has received, and sends its number of decisions.
+    /// Orders the proposed speed plus the values it has received, and sends its number of
+    /// decisions.
     struct Adder {
         me: VehicleId,
         decisions: f64,

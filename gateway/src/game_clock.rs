@@ -46,8 +46,8 @@ impl GameClock {
         }
     }
 
-    /// Records that the boat, which made its request at our own time `asked`, has joined a game whose time was `since`
-    /// at some moment after that.
+    /// Records that the boat, which made its request at our own time `asked`, has joined a game
+    /// whose time was `since` at some moment after that.
     pub(crate) fn join(&mut self, asked: SimTime, since: SimTime) {
         // The answer was created after the request, so the game cannot be further ahead of our
         // clock than this. The answer's travel time is unknown, and only makes the bound safer.

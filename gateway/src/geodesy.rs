@@ -23,8 +23,8 @@ pub struct LocalFrame {
 impl LocalFrame {
     /// The map around `datum`.
     pub fn new(datum: LatLon) -> LocalFrame {
-        // By geographiclib rather than a tangent plane of our own, which would be accurate enough for a field but one
-        // more thing to test.
+        // By geographiclib rather than a tangent plane of our own, which would be accurate enough
+        // for a field but one more thing to test.
         LocalFrame {
             datum,
             earth: Geodesic::wgs84(),

@@ -59,7 +59,8 @@ impl MotionCheck {
             measured.length() - reported.length() > SPEED_GAP_M_S
         });
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
-        // A stepping fix implies a course that is not the boat's, so the reported velocity takes precedence.
+        // A stepping fix implies a course that is not the boat's, so the reported velocity takes
+        // precedence.
         self.take_course(
             now,
             reported.is_some(),
@@ -97,7 +98,8 @@ impl MotionCheck {
         }
     }
 
-    /// Records that the receiver's position has jumped: older positions no longer yield the boat's speed.
+    /// Records that the receiver's position has jumped: older positions no longer yield the boat's
+    /// speed.
     pub(crate) fn jump(&mut self) {
         self.fixes.clear();
         (self.slow_since, self.course) = (None, None);
@@ -150,7 +152,8 @@ impl MotionCheck {
 mod tests {
     use super::*;
 
-    /// Drives a circle at this speed and rate of turn for 20 s, with these instrument readings; returns the fault.
+    /// Drives a circle at this speed and rate of turn for 20 s, with these instrument readings;
+    /// returns the fault.
     fn circle(
         speed_m_s: f64,
         turn_deg_s: f64,

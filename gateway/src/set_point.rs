@@ -122,7 +122,8 @@ impl SetPointMapper {
         self.within_limits(now, thrust, difference)
     }
 
-    /// The expected effect of an order's set-point. For a boat that steers by itself, turns are not predicted.
+    /// The expected effect of an order's set-point. For a boat that steers by itself, turns are not
+    /// predicted.
     pub fn ordered(&self, order: Order, set_point: SetPoint) -> Ordered {
         let heading_rad = if let Order::Steer { heading_rad, .. } = order {
             Some(heading_rad)

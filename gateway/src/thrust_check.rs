@@ -75,8 +75,8 @@ const TURN_SCATTER_MIN_RAD_S: f64 = 0.03;
 /// Minimum rate of turn, rad/s, of a healthy boat with a thrust difference of 100 %.
 const TURN_MIN_RAD_S: f64 = 0.15;
 /// A rate that is lower by this many standard deviations is a fault. In a gale the wind may hold a
-/// healthy boat for longer than a minute, or turn it the other way: the check is whether a larger order makes it turn
-/// more.
+/// healthy boat for longer than a minute, or turn it the other way: the check is whether a larger
+/// order makes it turn more.
 const SIGMAS: f64 = 5.0;
 /// Orders with a longer gap between them are not continuous, s.
 const GAP_MAX_S: f64 = 1.5;
@@ -168,7 +168,8 @@ pub(crate) struct ThrustCheck {
 }
 
 impl ThrustCheck {
-    /// Records the current command and the boat's motion: heading, rad, and speed ahead over the ground, m/s.
+    /// Records the current command and the boat's motion: heading, rad, and speed ahead over the
+    /// ground, m/s.
     pub(crate) fn observe(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
         let Nav {
             psi_rad,

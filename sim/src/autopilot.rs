@@ -56,8 +56,8 @@ impl AutopilotModel {
         let (hull, thruster) = boat;
         let wanted_m_s = speed_m_s.min(self.speed_max_m_s);
         let error_m_s = wanted_m_s - nu.surge;
-        // Feed-forward first: the loop only corrects errors in the calibrated resistance, so a new order does not have
-        // to wait for the integral.
+        // Feed-forward first: the loop only corrects errors in the calibrated resistance, so a new
+        // order does not have to wait for the integral.
         let surge = hull.surge_resistance_newton(wanted_m_s)
             + self.surge_per_m_s * error_m_s
             + *integral_newton;

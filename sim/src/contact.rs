@@ -5,9 +5,9 @@
 //! tick's motion, resolves the contacts and moves the poses. Its changes of velocity are copied
 //! back.
 //!
-//! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has no memory: a
-//! snapshot needs none of its state, and boats without contact have the same bytes whether or not the engine ran for
-//! others.
+//! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has
+//! no memory: a snapshot needs none of its state, and boats without contact have the same bytes
+//! whether or not the engine ran for others.
 
 use crate::hull::{HullModel, Planar};
 use primitives::angle::wrap_pi;
@@ -223,7 +223,8 @@ impl ContactModel {
                 displacements[b].start(),
                 shape_b,
             ) {
-                // Only the axis counts, not its sign: the mass along a line is the same in both directions.
+                // Only the axis counts, not its sign: the mass along a line is the same in both
+                // directions.
                 touches.push(Touch {
                     boat: a,
                     distance_m,

@@ -21,7 +21,8 @@ pub(crate) struct FlawModel {
     pub(crate) ventilation: Option<Ventilation>,
 }
 
-/// The changing state of flawed thrusters without their shafts. The default is that of perfect thrusters.
+/// The changing state of flawed thrusters without their shafts. The default is that of perfect
+/// thrusters.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
     /// Settings in transit to the thrusters, oldest first; one for each tick of latency.

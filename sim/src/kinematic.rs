@@ -159,8 +159,9 @@ impl KinematicModel {
 
     /// Advances a boat by `dt_s`, with the current `drift_m_s`.
     ///
-    /// The loops steer a course. For an order of two thrusts (fractions of full), thrust and rudder are half their sum
-    /// and half their difference, and the loops do not run. Hold means speed 0 on the current heading.
+    /// The loops steer a course. For an order of two thrusts (fractions of full), thrust and rudder
+    /// are half their sum and half their difference, and the loops do not run. Hold means speed 0
+    /// on the current heading.
     pub fn step(
         &self,
         state: &mut KinematicState,
@@ -283,7 +284,8 @@ fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
 mod tests {
     use super::*;
 
-    /// A boat with simple numbers: thrust in per cent equals speed in cm/s, without limits or losses.
+    /// A boat with simple numbers: thrust in per cent equals speed in cm/s, without limits or
+    /// losses.
     fn plain() -> Kinematic {
         let none = Pid {
             p: 0.0,

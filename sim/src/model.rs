@@ -100,7 +100,8 @@ impl Model {
             .iter()
             .map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
-        // Boats without sensors keep no readings, which would be useless in large fleets of perfect boats.
+        // Boats without sensors keep no readings, which would be useless in large fleets of perfect
+        // boats.
         let is_sensed = plan
             .vehicles
             .iter()

@@ -1,7 +1,7 @@
 //! One step of motion, for several boats side by side.
 //!
-//! A boat's step is a long chain of dependent operations, during which the processor mostly waits. Boats
-//! are independent, so eight advance together, one per lane. A lane performs the same IEEE
+//! A boat's step is a long chain of dependent operations, during which the processor mostly waits.
+//! Boats are independent, so eight advance together, one per lane. A lane performs the same IEEE
 //! operations whatever the other lanes and the processor, so results do not depend on the grouping.
 
 use crate::hull::{HullModel, Planar};
@@ -21,7 +21,8 @@ pub struct Forcing<T = f64> {
     pub nu_r: Planar<T>,
     /// Force on the hull without its own reaction, at the start, half-way and at the end.
     pub tau: [Planar<T>; 3],
-    /// The water's own motion half-way (waves and eddies), which affects resistance in addition to the boat's motion.
+    /// The water's own motion half-way (waves and eddies), which affects resistance in addition to
+    /// the boat's motion.
     pub water: Planar<T>,
     /// Rate of change of `water`.
     pub water_rate: Planar<T>,

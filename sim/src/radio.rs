@@ -1,8 +1,8 @@
 //! The radio link between minds ashore and their boats: delays and losses of reports and orders.
 //!
 //! All random values derive from the seed, by vehicle, direction and decision. Losses are therefore
-//! the same in one process and over a network, whatever else is sent. Delays and losses of the real network are
-//! additional.
+//! the same in one process and over a network, whatever else is sent. Delays and losses of the real
+//! network are additional.
 
 use crate::two_state::TwoStateChain;
 use messages::Order;

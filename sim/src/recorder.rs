@@ -68,7 +68,8 @@ impl GameRecorder {
         } else {
             vec![]
         };
-        // Passed on unencoded: another thread encodes and writes it, so that the disk never delays a game.
+        // Passed on unencoded: another thread encodes and writes it, so that the disk never delays
+        // a game.
         recorder.record(Entry::Decision(Box::new(Decision {
             frame,
             pictures,

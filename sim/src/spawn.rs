@@ -42,8 +42,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        // Boats with given positions come first: drawn positions must keep clear of them, wherever they are in the
-        // file.
+        // Boats with given positions come first: drawn positions must keep clear of them, wherever
+        // they are in the file.
         if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }

@@ -2,8 +2,8 @@
 //! and bursts of radio loss.
 //!
 //! With turn-on rate λ and turn-off rate μ, a chain that is off is on after a period p with
-//! probability λ / (λ + μ) (1 − e^−(λ+μ)p). Durations are exponential, and the fraction of time on is exactly λ / (λ +
-//! μ).
+//! probability λ / (λ + μ) (1 − e^−(λ+μ)p). Durations are exponential, and the fraction of time on
+//! is exactly λ / (λ + μ).
 
 use primitives::SimTime;
 

@@ -195,7 +195,8 @@ fn a_boat_stops_in_the_bay_of_a_mole() {
     let mole = Obstacle::Polygon {
         corners: corners.collect(),
     };
-    // Into the bay, as far as its end; not into the end of an arm; from behind and from the side, not at all.
+    // Into the bay, as far as its end; not into the end of an arm; from behind and from the side,
+    // not at all.
     for (start, east_m, north_m) in [
         ((90.0, 100.0, 90.0), (108.9, 109.2), (97.0, 103.0)),
         ((90.0, 104.0, 90.0), (98.0, 130.0), (103.0, 130.0)),

@@ -67,8 +67,8 @@ fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
 
 #[test]
 fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
-    // Full ahead from (40, 70) to the north: when it leaves, how long it remains outside, and when it is untagged, with
-    // looks at every step of 0.1 s and, as in the competition, at every tenth.
+    // Full ahead from (40, 70) to the north: when it leaves, how long it remains outside, and when
+    // it is untagged, with looks at every step of 0.1 s and, as in the competition, at every tenth.
     for (boat, speed_m_s, looks_s, want_s) in [
         ("heron", 2.0, 0.0, [8.9, 8.8, 28.6]),
         ("heron", 2.0, 1.0, [9.0, 9.0, 29.0]),

@@ -45,8 +45,8 @@ fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
 
 #[test]
 fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() {
-    // The published magnitude: 0.18 m/s of orbital velocity averaged over the hull in a sea of 0.3 m.
-    // Stokes drift is 0.04 m/s.
+    // The published magnitude: 0.18 m/s of orbital velocity averaged over the hull in a sea of 0.3
+    // m. Stokes drift is 0.04 m/s.
     let (mean, rms) = adrift(0.3, 4);
     assert!((0.08..0.3).contains(&rms), "oscillates at {rms} m/s");
     assert!(mean.length() < 0.08, "mean velocity {mean:?} m/s");

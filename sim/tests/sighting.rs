@@ -1,5 +1,5 @@
-//! Sightings compared with the scenario's settings: range, field of view, delay, noise, loss and memory; they are lost
-//! or delayed with the report that carries them.
+//! Sightings compared with the scenario's settings: range, field of view, delay, noise, loss and
+//! memory; they are lost or delayed with the report that carries them.
 
 mod common;
 

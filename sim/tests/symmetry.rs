@@ -185,8 +185,8 @@ fn it_does_not_matter_where_north_is() {
 fn it_does_not_matter_which_side_is_port() {
     // Mirrored at the meridian of the datum: east, heading, sway and yaw change sign. Exact without
     // waves; with them in single precision, because a heading and its mirror image lie between
-    // different entries of the table. Waves come from a single direction, because spread directions are drawn at random
-    // and not mirrored.
+    // different entries of the table. Waves come from a single direction, because spread directions
+    // are drawn at random and not mirrored.
     let sail = |side: f64, has_waves: bool| {
         let mut scenario = surveyor_on(|sea| {
             sea.current.mean_m_s = Ned {

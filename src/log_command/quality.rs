@@ -49,8 +49,8 @@ fn of_recording(file: &Path, progress: &mut Progress) -> Result<Quality> {
     Ok(quality.end())
 }
 
-/// The state of a boat's mind when it gave the order for a step; known only if the scenario's strategy reproduces the
-/// recorded order.
+/// The state of a boat's mind when it gave the order for a step; known only if the scenario's
+/// strategy reproduces the recorded order.
 fn mind_state(minds: &mut Minds, step: &Step, vehicle: usize) -> Option<MindState> {
     let id = VehicleId::at(vehicle);
     let order = minds.decide(id, step.decision.checked_sub(1)?, false)?;

@@ -18,8 +18,8 @@ use std::time::Duration;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
-    /// Replaces real boats with emulated ones, driven by gateways using the protocol that the gateway file specifies;
-    /// prints the gateways' final status
+    /// Replaces real boats with emulated ones, driven by gateways using the protocol that the
+    /// gateway file specifies; prints the gateways' final status
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
     /// Gateway file or name for the emulated boats [default: a Surveyor with conservative limits]

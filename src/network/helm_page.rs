@@ -108,8 +108,8 @@ pub(super) fn line(scenario: &Scenario, report: &HelmReport) -> String {
     format!("{}\n", line.trim_end())
 }
 
-/// The table of behaviours: name, kind, run state, weight and utility; functions for contacts are listed below their
-/// behaviours.
+/// The table of behaviours: name, kind, run state, weight and utility; functions for contacts are
+/// listed below their behaviours.
 fn rows(scenario: &Scenario, report: &HelmReport) -> Vec<[String; 5]> {
     let mut rows = vec![["behaviour", "kind", "state", "weight", "utility"].map(str::to_owned)];
     for behaviour in &report.behaviours {

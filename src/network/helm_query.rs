@@ -33,7 +33,8 @@ pub(crate) fn report(
     Ok(Some(report))
 }
 
-/// The helm report of a vehicle that has an agent. Repeats the query if a busy link dropped the reply.
+/// The helm report of a vehicle that has an agent. Repeats the query if a busy link dropped the
+/// reply.
 pub(crate) fn report_of_agent(
     observer: &Observer,
     vehicle: VehicleId,

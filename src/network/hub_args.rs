@@ -98,7 +98,8 @@ pub(crate) fn own_address() -> Option<IpAddr> {
     (!address.is_loopback() && !address.is_unspecified()).then_some(address)
 }
 
-/// What users on other machines, or other users of this machine, need in order to join and control a game.
+/// What users on other machines, or other users of this machine, need in order to join and control
+/// a game.
 pub(crate) fn token_text(token: &Token) -> String {
     format!(
         "token for agents and operators on other machines or accounts: {TOKEN_VARIABLE}={}",

@@ -32,7 +32,8 @@ struct NewArgs {
     /// Creates keys for the agents of this team; may be repeated
     #[arg(long = "team", value_name = "NAME")]
     teams: Vec<String>,
-    /// Creates keys for the gateway of this boat, or of any boat if no name is given; may be repeated
+    /// Creates keys for the gateway of this boat, or of any boat if no name is given; may be
+    /// repeated
     #[arg(long = "gateway", value_name = "BOAT", num_args = 0..=1, default_missing_value = "")]
     gateways: Vec<String>,
     /// Creates keys for observers, who can also stop boats
@@ -41,8 +42,8 @@ struct NewArgs {
     /// Creates keys for operators, who control the game and its boats
     #[arg(long)]
     operator: bool,
-    /// Name or address of the sim, besides localhost; may be repeated [default: this machine's name and
-    /// address]
+    /// Name or address of the sim, besides localhost; may be repeated [default: this machine's name
+    /// and address]
     #[arg(long = "host", value_name = "HOST", value_parser = host)]
     hosts: Vec<String>,
     /// Validity of the keys, days

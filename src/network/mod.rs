@@ -91,7 +91,8 @@ pub(crate) enum Command {
 }
 
 pub(crate) fn run(command: &Command) -> Result<ExitCode> {
-    // `run` only passes keys on: its children without keys must not inherit the thread settings of those with keys.
+    // `run` only passes keys on: its children without keys must not inherit the thread settings of
+    // those with keys.
     if !matches!(command, Command::Run(_) | Command::Demo(_)) {
         leaf_args::restart_with_threads_for_keys()?;
     }

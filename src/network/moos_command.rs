@@ -14,8 +14,8 @@ use std::time::Duration;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or NAME=IP:PORT on that port;
-    /// NAME=tcp/HOST:PORT uses a running MOOSDB
+    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or
+    /// NAME=IP:PORT on that port; NAME=tcp/HOST:PORT uses a running MOOSDB
     #[arg(long, num_args = 1.., value_name = "NAME[=ADDRESS]", value_parser = boat)]
     vehicle: Vec<(String, Option<Address>)>,
     /// Connects all boats of this team, each with its own MOOSDB
@@ -27,8 +27,8 @@ pub(crate) struct Args {
     /// Shows the whole game to pMarineViewer in the MOOSDB at this address, for example :9000
     #[arg(long, value_name = "ADDRESS")]
     shore: Option<Address>,
-    /// Sends what the shoreside publishes to pShare at this address, for example shore.local:9300; may be
-    /// repeated
+    /// Sends what the shoreside publishes to pShare at this address, for example shore.local:9300;
+    /// may be repeated
     #[arg(long, value_name = "HOST:PORT", requires = "shore")]
     pshare: Vec<String>,
     /// Receives commands, such as DEPLOY_ALL, from pShare at this address, for example 0.0.0.0:9301

@@ -22,8 +22,8 @@ const TOKEN_VARIABLE: &str = "SQUALL_PAGE_TOKEN";
 
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct PageArgs {
-    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token is required
-    /// [default: 127.0.0.1:8088, or another free port if 8088 is taken]
+    /// Address and port of the page; if other machines can reach it, as with 0.0.0.0:8088, a token
+    /// is required [default: 127.0.0.1:8088, or another free port if 8088 is taken]
     #[arg(long, value_name = "ADDRESS", value_parser = address)]
     listen: Option<SocketAddr>,
     /// Token required to pause, stop or drive from the page, but not to watch. Other users of this

@@ -1,4 +1,5 @@
-//! `squall replay` on a page: a recorded game, with helm reports from minds that are given its pictures again.
+//! `squall replay` on a page: a recorded game, with helm reports from minds that are given its
+//! pictures again.
 
 use super::page_args::PageArgs;
 use super::replay_helms::ReplayHelms;

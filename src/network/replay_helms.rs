@@ -1,4 +1,5 @@
-//! The helm reports of a replay: minds decide again, and their orders are compared with the recorded ones.
+//! The helm reports of a replay: minds decide again, and their orders are compared with the
+//! recorded ones.
 
 use crate::minds::Minds;
 use messages::Order;

@@ -225,8 +225,8 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-/// The number of boats for one agent process: the requested number, or more if the processes for so many boats would
-/// overload the machine. The game is the same.
+/// The number of boats for one agent process: the requested number, or more if the processes for so
+/// many boats would overload the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))

@@ -1,4 +1,5 @@
-//! `squall policy --submission`: a policy as an entry for the Maritime Capture the Flag competition.
+//! `squall policy --submission`: a policy as an entry for the Maritime Capture the Flag
+//! competition.
 
 use anyhow::{Result, bail};
 use command_line::output_file;
@@ -16,7 +17,8 @@ const PERIOD_S: f64 = 1.0;
 /// Writes the entry into `folder`. Returns a message for the user.
 ///
 /// # Errors
-/// If the competition does not provide the model's observations or accept its actions, or if a file cannot be written.
+/// If the competition does not provide the model's observations or accept its actions, or if a file
+/// cannot be written.
 pub(crate) fn write(model: &PolicyModel, is_sampled: bool, folder: &Path) -> Result<String> {
     let spec = model.spec;
     if spec.observation.edition().is_none() {

@@ -21,8 +21,8 @@ use std::time::Duration;
 
 /// Size limit of a state, bytes: networks of the largest size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
-/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and loses everything after
-/// the last saved state.
+/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and
+/// loses everything after the last saved state.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
 /// Saving takes at most one part in this many of the time.
 const SAVE_SHARE: u32 = 20;

@@ -3,7 +3,8 @@
 use crate::program::{command, only_file, printed, refusal};
 use std::path::Path;
 
-/// Built-in files stand in for those missing from a folder `scenarios`, even if its name is not typed.
+/// Built-in files stand in for those missing from a folder `scenarios`, even if its name is not
+/// typed.
 #[test]
 fn a_file_in_scenarios_is_the_same_from_every_folder() {
     let dir = tempfile::tempdir().unwrap();

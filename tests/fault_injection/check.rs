@@ -115,7 +115,8 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
     let is_lossy = plan.conditions.loss > 0.0 || plan.conditions.damaged.0 > 0.0;
     let margin = if is_lossy { SENT_OFTEN } else { SENT_AGAIN };
     let enough = plan.patience().saturating_sub(margin);
-    // A suspended sim must not report its agents as lost; cutting off the sim cuts off all the others.
+    // A suspended sim must not report its agents as lost; cutting off the sim cuts off all the
+    // others.
     let is_excused = |node: usize| {
         let absent = plan.longest_absence(node, node == SIM);
         absent > Duration::ZERO && absent >= enough

@@ -1,4 +1,5 @@
-//! A page that shows the game and sometimes stops it. It uses the real page server, without a browser or sockets.
+//! A page that shows the game and sometimes stops it. It uses the real page server, without a
+//! browser or sockets.
 
 use crate::operator::{PROMISED, RECOVERS};
 use crate::plan::{Plan, SIM};

@@ -21,8 +21,8 @@ const WATCHDOG_S: f64 = 2.0;
 pub(crate) const DECLINATION_RAD: f64 = -0.218;
 /// Unread bytes for the gateway beyond this are lost.
 const UNREAD_MAX: usize = 1 << 16;
-/// An order that waits for the gateway's loop is at most this much older than the oracle assumes, s; an older one is
-/// not used.
+/// An order that waits for the gateway's loop is at most this much older than the oracle assumes,
+/// s; an older one is not used.
 pub(crate) const WAITED_S: f64 = 0.55;
 
 /// The wire between a boat and its gateway.

@@ -9,8 +9,8 @@ use sim::node::Pace;
 use simulated_network::Published;
 use std::time::Duration;
 
-/// A boat that must hold has stopped its thrusters after this much simulated time: they change by a fifth of their
-/// range per second, with a lag of 0.25 s.
+/// A boat that must hold has stopped its thrusters after this much simulated time: they change by a
+/// fifth of their range per second, with a lag of 0.25 s.
 const SETTLES_S: f64 = 6.5;
 /// A real boat that has joined is reported at least this often, whatever the pauses.
 const UNREPORTED: Duration = Duration::from_secs(2);

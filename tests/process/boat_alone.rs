@@ -1,5 +1,5 @@
-//! A boat with no node but its gateway, or without even that: it can be stopped without a sim, and it stops when its
-//! gateway dies.
+//! A boat with no node but its gateway, or without even that: it can be stopped without a sim, and
+//! it stops when its gateway dies.
 
 use crate::gateway::Water;
 use crate::support::{

@@ -24,8 +24,8 @@ use std::time::{Duration, Instant};
 /// Margin on a busy machine beyond the documented time.
 const SLACK: Duration = Duration::from_millis(1500);
 
-/// A thruster that is commanded to stop changes by a fifth of its range per second, with a lag of 0.25 s: from 70 % it
-/// gives less than this after 3.5 + 1.1 s.
+/// A thruster that is commanded to stop changes by a fifth of its range per second, with a lag of
+/// 0.25 s: from 70 % it gives less than this after 3.5 + 1.1 s.
 const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
 

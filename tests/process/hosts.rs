@@ -17,7 +17,8 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
     for cut_s in [2, 15] {
         sim.play_on(5.0);
         hosts.cable("down");
-        // Longer than the sim's patience: the boats on the other machine lose their agents, and the game continues.
+        // Longer than the sim's patience: the boats on the other machine lose their agents, and the
+        // game continues.
         sim.wait_for_event("agent_lost", "red_one");
         sim.play_on(1.0);
         std::thread::sleep(Duration::from_secs(cut_s));

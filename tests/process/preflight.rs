@@ -13,7 +13,8 @@ fn refused(all: &Loop) -> String {
         .unwrap_or_default()
 }
 
-/// Runs the check, which passes, with this gateway file in place of the gateway. Returns its output and its errors.
+/// Runs the check, which passes, with this gateway file in place of the gateway. Returns its output
+/// and its errors.
 fn check(all: &mut Loop, config: &str, report: &Path) -> [String; 2] {
     all.end_gateway();
     let link = format!("tcp://127.0.0.1:{}", all.proxy.port);

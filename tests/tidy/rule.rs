@@ -1,5 +1,5 @@
-//! The rules, each of which finds its breaches in a tree. These files are checked too, so words that must not occur are
-//! joined from halves.
+//! The rules, each of which finds its breaches in a tree. These files are checked too, so words
+//! that must not occur are joined from halves.
 
 use crate::language::{language, links};
 use crate::shown_by::shown_by;
@@ -178,7 +178,8 @@ const ALL: &[&str] = &["all of the workspace"];
 /// Crates outside the workspace, which none may import.
 const OUTSIDE: [&str; 3] = ["fuzz", "gateway-crosscheck", "python"];
 
-/// Crates whose network shell, `node`, is the only part that may use `bus`; everything else in them is pure.
+/// Crates whose network shell, `node`, is the only part that may use `bus`; everything else in them
+/// is pure.
 const SHELLS: [&str; 3] = ["sim", "agent", "gateway"];
 
 /// The file with the readers' questions.

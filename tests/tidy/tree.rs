@@ -23,7 +23,8 @@ impl Tree {
     }
 
     fn add(&mut self, folder: &Path, path: &str) {
-        // Cargo marks the output folders that it creates; `target` may be older than its first build.
+        // Cargo marks the output folders that it creates; `target` may be older than its first
+        // build.
         let is_output = folder.join("CACHEDIR.TAG").exists() || path == "target";
         if is_output || folder.ends_with("node_modules") {
             return;

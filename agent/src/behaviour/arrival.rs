@@ -8,15 +8,17 @@ use std::f64::consts::TAU;
 const AWAY_M: f64 = 0.5;
 
 /// A point that the boat approaches. It is reached within the capture radius, or within the slip
-/// radius once it recedes. A boat that has circled the point cannot turn tightly enough to reach it. The point then
-/// counts as reached, as does every later point that the boat approaches as closely.
+/// radius once it recedes. A boat that has circled the point cannot turn tightly enough to reach
+/// it. The point then counts as reached, as does every later point that the boat approaches as
+/// closely.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
     nearest_m: f64,
     /// The bearing of the point and its accumulated rotation, rad.
     bearing_rad: Option<f64>,
     turned_rad: f64,
-    /// Points within this distance count as reached, because the boat has circled a point at this distance, m.
+    /// Points within this distance count as reached, because the boat has circled a point at this
+    /// distance, m.
     gone_round_m: f64,
 }
 

@@ -15,9 +15,9 @@ const ROUNDING_M: f32 = 0.01;
 
 /// Lowers the utilities of a table to the clearance that each candidate keeps from the edges.
 ///
-/// A candidate is worth the fraction of `save_m` that it keeps: half for the least distance to an edge
-/// on the way, half for the distance at the end of the look-ahead. The worst edge counts. For the fraction `x` it gets
-/// `x + bend x (1 - x)` of each half.
+/// A candidate is worth the fraction of `save_m` that it keeps: half for the least distance to an
+/// edge on the way, half for the distance at the end of the look-ahead. The worst edge counts. For
+/// the fraction `x` it gets `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,

@@ -20,7 +20,8 @@ enum Halt {
     Halted {
         since: SimTime,
     },
-    /// Released after its time limit with others still near; it halts again only after it has been clear of them.
+    /// Released after its time limit with others still near; it halts again only after it has been
+    /// clear of them.
     Released,
 }
 

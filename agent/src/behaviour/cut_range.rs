@@ -1,4 +1,5 @@
-//! Cut range: closes in on a boat, by the current closing speed and the later closest point of approach.
+//! Cut range: closes in on a boat, by the current closing speed and the later closest point of
+//! approach.
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Approach, Closest, Closing, Objective};
@@ -34,8 +35,8 @@ impl BehaviourLogic for CutRange {
             approach: Approach::Seek,
             lag: None,
         };
-        // As in MOOS-IvP's CutRange, patience 0 closes in as fast as possible now, and patience 1 heads for the meeting
-        // point.
+        // As in MOOS-IvP's CutRange, patience 0 closes in as fast as possible now, and patience 1
+        // heads for the meeting point.
         output.add_share(
             1.0 - patience,
             Some(contact.vehicle),

@@ -116,9 +116,10 @@ impl BehaviourLogic for OpRegionBehaviour {
         }
         self.table.clear(output.grid());
         let nav = &situation.own.nav;
-        // A straight line from the boat's position predicts that turning around at full speed clears the edge; a
-        // Surveyor at 2 m/s needs 7 s and 9 m for it. The arc reduced departures from 6.2 to 0.2 per boat-hour (200
-        // games of 120 s, calm water, `crates/arena/examples/safety.rs`).
+        // A straight line from the boat's position predicts that turning around at full speed
+        // clears the edge; a Surveyor at 2 m/s needs 7 s and 9 m for it. The arc reduced departures
+        // from 6.2 to 0.2 per boat-hour (200 games of 120 s, calm water,
+        // `crates/arena/examples/safety.rs`).
         self.instructions.run(Clearance {
             table: &mut self.table,
             grid: output.grid(),

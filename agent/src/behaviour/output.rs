@@ -88,7 +88,8 @@ impl<'a> BehaviourOutput<'a> {
         self.active = true;
         self.functions.problem.add(weight, objective);
         let mut utilities = Vec::new();
-        // The functions of a decision comprise 100,000 numbers, ten times a second per boat, and are rarely requested.
+        // The functions of a decision comprise 100,000 numbers, ten times a second per boat, and
+        // are rarely requested.
         if self.functions.shown {
             let grid = self.grid();
             utilities.extend(grid.points().map(|(k, j)| objective.utility(grid, k, j)));

@@ -75,8 +75,8 @@ impl BehaviourLogic for PolicyBehaviour {
         else {
             return;
         };
-        // A policy proposes and the helm decides: external proposals are only weighed, and limited to the boat's
-        // abilities.
+        // A policy proposes and the helm decides: external proposals are only weighed, and limited
+        // to the boat's abilities.
         let speed_m_s = speed_m_s.clamp(0.0, situation.model.speed_max_m_s);
         let (heading_rad, speed_m_s) = situation.motion.steer(course_rad, speed_m_s);
         output.add(&Objective::Coupled {

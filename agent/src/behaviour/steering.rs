@@ -35,8 +35,8 @@ pub(super) fn toward(situation: &Situation, to: Ned, speed_m_s: f64) -> Objectiv
     steer(situation, situation.at.bearing_rad(to), speed_m_s, 0.5)
 }
 
-/// A course, rad, and a speed over the ground, limited to the boat's maximum, with the course's fraction of the
-/// utility.
+/// A course, rad, and a speed over the ground, limited to the boat's maximum, with the course's
+/// fraction of the utility.
 pub(super) fn steer(
     situation: &Situation,
     course_rad: f64,

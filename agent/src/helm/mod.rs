@@ -1,9 +1,9 @@
 //! The helm of one boat: follows a strategy's program and decides course and speed by interval
 //! programming.
 //!
-//! A decision processes the picture, applies the rules, chooses the mode, runs every behaviour that may run, and
-//! selects the course and speed with the largest weighted sum of utilities. Values posted by behaviours take effect
-//! after all have run, so that their order does not matter.
+//! A decision processes the picture, applies the rules, chooses the mode, runs every behaviour that
+//! may run, and selects the course and speed with the largest weighted sum of utilities. Values
+//! posted by behaviours take effect after all have run, so that their order does not matter.
 
 mod report;
 mod run_state;
@@ -264,10 +264,10 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        // A fraction of the weights, at most a tenth (checked when the file is loaded): it can delay a
-        // change of mind, but not outweigh safety. Edges do not count: they do not move, so noise
-        // does not cause changes of mind near them, and including them would keep a boat there that is needed
-        // elsewhere.
+        // A fraction of the weights, at most a tenth (checked when the file is loaded): it can
+        // delay a change of mind, but not outweigh safety. Edges do not count: they do not move, so
+        // noise does not cause changes of mind near them, and including them would keep a boat
+        // there that is needed elsewhere.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,

@@ -215,8 +215,9 @@ pub(super) struct Ways {
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// For the middle path: the contact's position after the turn, its motion until then and the fraction of that until
-    /// it was nearest, its motion afterwards, and the time at which it is nearest.
+    /// For the middle path: the contact's position after the turn, its motion until then and the
+    /// fraction of that until it was nearest, its motion afterwards, and the time at which it is
+    /// nearest.
     middle: Vector,
     past: Vector,
     share: f32,

@@ -378,8 +378,8 @@ impl Sums {
     }
 }
 
-/// Formulas with full utility throughout a sector: those that avoid a contact that does not come near on any path in
-/// it.
+/// Formulas with full utility throughout a sector: those that avoid a contact that does not come
+/// near on any path in it.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
     /// By formula, a bit for each sector of the group.

@@ -211,8 +211,8 @@ impl MeanSpeed {
         })
     }
 
-    /// The mean speed for an ordered one. If the change takes the fraction `y` of the time, the mean
-    /// change is `y
+    /// The mean speed for an ordered one. If the change takes the fraction `y` of the time, the
+    /// mean change is `y
     /// - y^2 / 2` of the largest possible.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {

@@ -34,7 +34,8 @@ pub(super) struct AgentLoop {
     runner: MindRunner,
     talk: Talk,
     policies: PolicyInbox,
-    /// Opened after joining: an agent that is waiting for a boat must not answer for the agent that has it.
+    /// Opened after joining: an agent that is waiting for a boat must not answer for the agent that
+    /// has it.
     helm_queries: Option<HelmQueries>,
     orders: Publisher,
     /// The pictures of each team, oldest first, that the minds have not seen.

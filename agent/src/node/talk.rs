@@ -51,8 +51,8 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        // By the scenario's strategies: if a mate follows another one (`--strategy`), the agent waits for its messages
-        // at most once.
+        // By the scenario's strategies: if a mate follows another one (`--strategy`), the agent
+        // waits for its messages at most once.
         let talks = |vehicle| {
             roles::role_of(scenario, vehicle)
                 .variables

@@ -1,6 +1,6 @@
 //! The observation spaces of Pyquaticus (`state_to_obs` of its main branch, 2023 and 2025, and of
-//! the 2026 competition): bearings relative to the heading in half turns clockwise, distances in field
-//! diagonals, everything scaled to -1 to 1, booleans as -1 and 1.
+//! the 2026 competition): bearings relative to the heading in half turns clockwise, distances in
+//! field diagonals, everything scaled to -1 to 1, booleans as -1 and 1.
 //!
 //! For the boat itself: the enemies' flag, its own flag, the walls to starboard, behind, to port
 //! and ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side,

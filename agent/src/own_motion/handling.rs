@@ -1,4 +1,5 @@
-//! Handling: how soon, fast and hard a boat turns and brakes, according to its file and later to observation.
+//! Handling: how soon, fast and hard a boat turns and brakes, according to its file and later to
+//! observation.
 
 use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
 
@@ -8,8 +9,8 @@ const MEAN_OF_STEADY: f64 = 0.7;
 const DECISION_S: f64 = 0.45;
 /// Mean yaw rate of a turn as a fraction of its initial rate, since the error decreases.
 const MEAN_OF_FIRST: f64 = 0.6;
-/// Minimum turn rate of a boat with thrusters as a fraction of the maximum: the helm keeps asking for
-/// more during a turn.
+/// Minimum turn rate of a boat with thrusters as a fraction of the maximum: the helm keeps asking
+/// for more during a turn.
 const LEAST_OF_MOST: f64 = 0.3;
 /// The same for a point boat, which takes half a minute for the last degrees of a turn.
 const LEAST_OF_POINT_BOAT: f64 = 0.1;
@@ -145,10 +146,10 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
     }
 }
 
-/// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, in per cent per degree and per cent
-/// per (degree/s), and the yaw rate is proportional to rudder and thrust. With k for the yaw rate per rudder at full
-/// thrust, r = k (p e - d r) gives k p / (1 + k d) per unit of heading error. It reaches half of the acceleration
-/// limits.
+/// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, in per cent per
+/// degree and per cent per (degree/s), and the yaw rate is proportional to rudder and thrust. With
+/// k for the yaw rate per rudder at full thrust, r = k (p e - d r) gives k p / (1 + k d) per unit
+/// of heading error. It reaches half of the acceleration limits.
 fn of_kinematic(kinematic: &Kinematic) -> Handling {
     let per_rudder_rad_s = kinematic.turn_rate.to_radians() / 100.0 * (kinematic.thrust_max / 50.0);
     let [rudder_per_rad, rudder_per_rad_s] =
@@ -175,7 +176,8 @@ fn of_kinematic(kinematic: &Kinematic) -> Handling {
 }
 
 /// The boat's observed turn rate relative to its file: the least-squares ratio of observed to
-/// expected yaw rates, with a prior of 1 weighted like [`TRUST_S`] seconds of turning, and exponential forgetting.
+/// expected yaw rates, with a prior of 1 weighted like [`TRUST_S`] seconds of turning, and
+/// exponential forgetting.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SeenTurn {
     /// Sums of expected × observed and of expected², rad²/s.

@@ -19,7 +19,8 @@ const OFFSET_GAIN_PER_S: f64 = 0.25;
 /// While the model must still turn by more than this, the offset is not updated, because the
 /// difference comes from the turn, rad.
 const TURNING_RAD: f64 = 0.35;
-/// Change of heading after which an offset is no longer valid, because the wind acts at another angle, rad.
+/// Change of heading after which an offset is no longer valid, because the wind acts at another
+/// angle, rad.
 const FORGOTTEN_RAD: f64 = 0.8;
 /// Upper bound of the offset, rad.
 const OFFSET_MAX_RAD: f64 = 0.7;

@@ -1,8 +1,8 @@
 //! The boat's response to orders: its drift, its heading offset and its handling.
 //!
-//! Everything derives from the boat's file, its own navigation and its own orders, so that it works on a real boat as
-//! it does in simulation. Decisions are heading and speed through the water; the velocity over the ground is that plus
-//! the drift.
+//! Everything derives from the boat's file, its own navigation and its own orders, so that it works
+//! on a real boat as it does in simulation. Decisions are heading and speed through the water; the
+//! velocity over the ground is that plus the drift.
 
 mod drift;
 mod handling;
@@ -26,8 +26,8 @@ const TURN_MAX_RAD: f64 = 2.6;
 /// A point boat whose thrust follows the order brakes at full deceleration when its order is lower
 /// by the speed that it then loses in this time, s.
 const BRAKES_S: f64 = 1.0;
-/// A point boat that has to turn by this angle, rad, is ordered more speed than it has, so that it has thrust to turn
-/// with; from the second angle on, full speed.
+/// A point boat that has to turn by this angle, rad, is ordered more speed than it has, so that it
+/// has thrust to turn with; from the second angle on, full speed.
 const STEERS_FROM_RAD: (f64, f64) = (0.35, 1.0);
 /// A turn at least this large keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;

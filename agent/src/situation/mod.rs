@@ -29,12 +29,13 @@ use turn_estimate::{TurnEstimate, turning_on};
 const KEEPS_ON_S: f64 = 15.0;
 /// A contact is assumed to be at rest after this long, s.
 const STILL_AFTER_S: f64 = 30.0;
-/// A boat of the team is dead reckoned after this time without a fix, s: at the usual delays it moves
-/// less than a receiver errs, and to rotate the motion of a whole fleet takes time.
+/// A boat of the team is dead reckoned after this time without a fix, s: at the usual delays it
+/// moves less than a receiver errs, and to rotate the motion of a whole fleet takes time.
 const LATE_S: f64 = 0.5;
 /// Distance to anything unknown, m.
 const NOWHERE_M: f64 = 1e9;
-/// A boat this far inside its untagging place was tagged there and must leave it, as a fraction of the radius.
+/// A boat this far inside its untagging place was tagged there and must leave it, as a fraction of
+/// the radius.
 const WELL_INSIDE: f64 = 0.5;
 /// Fraction of the radius beyond which it counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
@@ -94,7 +95,8 @@ impl OtherBoat {
     }
 }
 
-/// The way of a boat of the team since its last fix, at the velocity that it had then along its axes.
+/// The way of a boat of the team since its last fix, at the velocity that it had then along its
+/// axes.
 #[derive(Clone, Copy, Debug)]
 struct Track {
     fix: SimTime,
@@ -196,7 +198,8 @@ impl Situation {
         self.is_seen = Some(self.apply_picture(picture));
     }
 
-    /// Processes the newest picture unless a preview has done so. Returns whether it shows the boat itself.
+    /// Processes the newest picture unless a preview has done so. Returns whether it shows the boat
+    /// itself.
     pub(crate) fn update(&mut self, picture: &Picture) -> bool {
         self.is_seen
             .take()
@@ -291,8 +294,8 @@ impl Situation {
     }
 
     /// The position of a boat of the team now, and its velocity along its axes. Fixes drop out for
-    /// seconds, and links are silent; headings do not drop out, and the last position is one that the
-    /// boat has left.
+    /// seconds, and links are silent; headings do not drop out, and the last position is one that
+    /// the boat has left.
     fn reckoned(&mut self, boat: &OwnBoat, now: SimTime) -> (Ned, Body) {
         let i = boat.vehicle.index();
         let fix = boat.fix_ns;
@@ -317,8 +320,8 @@ impl Situation {
         (boat.nav.at() + track.gone, track.velocity)
     }
 
-    /// Records which enemies have tagged a boat of the team, and so cannot tag again for a while, and which boats are
-    /// out of action.
+    /// Records which enemies have tagged a boat of the team, and so cannot tag again for a while,
+    /// and which boats are out of action.
     fn note_events(&mut self, picture: &Picture) {
         for logged in picture.events.iter().filter_map(EventRecord::logged) {
             match logged.event {

@@ -44,7 +44,8 @@ fn the_first_mode_whose_condition_holds_is_the_one() {
 
 #[test]
 fn every_shipped_strategy_takes_a_flag_home() {
-    // The medium defender may come across a flag in pursuit, and once held its station while carrying it.
+    // The medium defender may come across a flag in pursuit, and once held its station while
+    // carrying it.
     for strategy in [
         "easy_attacker",
         "medium_attacker",

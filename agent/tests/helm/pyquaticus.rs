@@ -1,6 +1,6 @@
 //! Observations compared with those of Pyquaticus: states of its own games of two and of six
-//! Surveyors, including boats that carry, are tagged, or have recently tagged. The files give the commit and the names
-//! of the values.
+//! Surveyors, including boats that carry, are tagged, or have recently tagged. The files give the
+//! commit and the names of the values.
 
 use crate::scene::{self, loaded};
 use agent::{ActionSpace, ObservationSpace, Pilot, Spaces};

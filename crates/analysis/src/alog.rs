@@ -3,9 +3,9 @@
 //!
 //! As after a mission, there is a file for the shoreside and one for every vehicle. Positions are
 //! local metres, x east and y north of the datum; headings are compass degrees. A file has a header
-//! of five lines, then rows in time order: seconds since `LOGSTART` in 15 columns with 5 decimal places,
-//! the variable in 20, the source in 15, and the value. Values are not escaped, and older readers
-//! drop blanks, so no value here contains any.
+//! of five lines, then rows in time order: seconds since `LOGSTART` in 15 columns with 5 decimal
+//! places, the variable in 20, the source in 15, and the value. Values are not escaped, and older
+//! readers drop blanks, so no value here contains any.
 //!
 //! | file | variables |
 //! |---|---|

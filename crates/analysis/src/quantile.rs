@@ -33,8 +33,8 @@ impl Quantile {
         self.count += 1;
     }
 
-    /// The quantile at this fraction of the values, by nearest rank; up to one part in 128 too large. None without
-    /// values.
+    /// The quantile at this fraction of the values, by nearest rank; up to one part in 128 too
+    /// large. None without values.
     pub(crate) fn at(&self, share: f64) -> Option<f64> {
         let rank = ((share * self.count as f64).ceil() as u64).max(1);
         let mut reached = 0;

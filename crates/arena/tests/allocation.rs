@@ -1,7 +1,7 @@
 //! Heap allocations of a whole decision: pictures, minds, ticks and the referee.
 //!
-//! `stats_alloc` counts them (see `sim/tests/allocation.rs`). This file has a single test, because the count covers the
-//! whole process.
+//! `stats_alloc` counts them (see `sim/tests/allocation.rs`). This file has a single test, because
+//! the count covers the whole process.
 
 use scenario::Scenario;
 use sim::Contest;

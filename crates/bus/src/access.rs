@@ -26,8 +26,8 @@ struct Rights {
 /// Any node that reaches a hub without keys.
 const ANYBODY: Rights = Rights {
     publishes: &[
-        // All levels below, not just one: without keys the team in the key proves nothing, and the sim checks the
-        // ticket of each order anyway.
+        // All levels below, not just one: without keys the team in the key proves nothing, and the
+        // sim checks the ticket of each order anyway.
         "order/**",
         "say/{team}",
         "policy/{boat}",
@@ -115,8 +115,8 @@ const OBSERVER: Rights = Rights {
     answers: &[],
     ..ANYBODY
 };
-// The only role admitted to `operate`: with keys no additional token is required, since it would be a second secret for
-// the same right.
+// The only role admitted to `operate`: with keys no additional token is required, since it would be
+// a second secret for the same right.
 const OPERATOR: Rights = Rights {
     publishes: &["control", "stop/{boat}", "policy/{boat}"],
     asks: &[

@@ -142,7 +142,8 @@ impl Port {
         found.retain(|ends, _| !links.contains(ends));
         self.slots.retain(|ends, _| found.contains_key(ends));
         for (ends, descriptor) in found {
-            // Mapped IPv4 addresses count as IPv4; otherwise one host would have two allowances on the port.
+            // Mapped IPv4 addresses count as IPv4; otherwise one host would have two allowances on
+            // the port.
             let admit = || {
                 self.waiting.admit(ends.1.ip().to_canonical(), move || {
                     descriptor::end(descriptor, ends)

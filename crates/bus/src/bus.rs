@@ -15,8 +15,8 @@ use serde::Serialize;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Message priority. No message waits for a link: a congested link drops messages that it cannot accept immediately,
-/// and senders repeat those that must arrive.
+/// Message priority. No message waits for a link: a congested link drops messages that it cannot
+/// accept immediately, and senders repeat those that must arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
     /// Stops of boats: sent immediately, before everything else.
@@ -35,7 +35,8 @@ pub enum Delivery {
 }
 
 impl Delivery {
-    /// For messages sent at every decision: in lockstep each message counts, in real time the next one replaces it.
+    /// For messages sent at every decision: in lockstep each message counts, in real time the next
+    /// one replaces it.
     pub fn per_decision(is_lockstep: bool) -> Delivery {
         if is_lockstep {
             Delivery::Reliable

@@ -20,8 +20,8 @@ type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 /// commands are queries to the sim.
 ///
 /// # Errors
-/// [`BusError`] if the sim refuses or does not respond (gateways may still have received a stop), if
-/// it requires an unknown token, or if the session is closed.
+/// [`BusError`] if the sim refuses or does not respond (gateways may still have received a stop),
+/// if it requires an unknown token, or if the session is closed.
 ///
 /// # Panics
 /// Never: a control is JSON.
@@ -72,7 +72,8 @@ fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<A
     let bus = bus.clone();
     let key = key.to_owned();
     let answered = Arc::clone(answered);
-    // In its own thread: a query blocks until answered or timed out, and the stop must be repeated in the meantime.
+    // In its own thread: a query blocks until answered or timed out, and the stop must be repeated
+    // in the meantime.
     let asked = start_thread("stop-question", move || {
         if let Some(reply) = bus.request(&key, &control, limit).transpose() {
             answered.visit(|answered| *answered = Some(reply));

@@ -52,8 +52,8 @@ impl From<BusError> for Missing {
     fn from(error: BusError) -> Missing {
         match error {
             BusError::NeedsToken
-            // Waiting does not fix these; they need a person's intervention. All others may pass, such as a sim that
-            // starts later or an unplugged cable.
+            // Waiting does not fix these; they need a person's intervention. All others may pass,
+            // such as a sim that starts later or an unplugged cable.
             | BusError::WrongToken
             | BusError::Keys(_)
             | BusError::NeedsKeys(_)
@@ -139,8 +139,8 @@ pub fn find_game(
 ) -> Result<(Bus, GameName, GameInfo), Missing> {
     let bus = place.session(named, session)?;
     let (game, info) = choose_game(&bus, named)?;
-    // The sim may have started after the session was opened. Look it up again with the game's name: without a name, the
-    // registry was asked for any game.
+    // The sim may have started after the session was opened. Look it up again with the game's name:
+    // without a name, the registry was asked for any game.
     let token = place.net(Some(&game))?.token;
     Ok((bus.with_token(token), game, info))
 }
@@ -159,8 +159,8 @@ pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, Gam
 fn only_game(bus: &Bus) -> Result<GameName, Missing> {
     let games = games(bus)?;
     match games.as_slice() {
-        // Usually there is only one game, and requiring its name would be a nuisance. With several, a
-        // guess could join boats to another person's game.
+        // Usually there is only one game, and requiring its name would be a nuisance. With several,
+        // a guess could join boats to another person's game.
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim found on the network".to_owned())),
         several => {
@@ -252,8 +252,8 @@ pub fn join(
     // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // Gives the sim the node's session, so that the sim can act as soon as that link ends. A killed process
-    // closes its socket, and its boats hold in the same decision.
+    // Gives the sim the node's session, so that the sim can act as soon as that link ends. A killed
+    // process closes its socket, and its boats hold in the same decision.
     let version = primitives::VERSION.to_owned();
     let node = bus.id();
     let asked = clock::now();

@@ -84,9 +84,9 @@ impl Bus {
                 .ask(priority, key, Parcel::new(payload), limit, &mut |_| true);
         };
         // Any node may declare that it answers for a boat's gateway, and zenoh routes a query to
-        // the first that claims completeness: a stranger could swallow an E-stop and reply "disarmed". Therefore all
-        // are queried, and only a sealed answer counts. A relay in the sim would make each command depend on the sim's
-        // loop.
+        // the first that claims completeness: a stranger could swallow an E-stop and reply
+        // "disarmed". Therefore all are queried, and only a sealed answer counts. A relay in the
+        // sim would make each command depend on the sim's loop.
         let question = Parcel::question(payload);
         let mut refused = false;
         let answer = self

@@ -26,7 +26,8 @@ pub struct RosSession {
 pub struct RosPublisher(ZenohSender);
 
 impl RosSession {
-    /// Connects to the router at `endpoint` as a client. If none is running on this machine, acts as the router.
+    /// Connects to the router at `endpoint` as a client. If none is running on this machine, acts
+    /// as the router.
     ///
     /// # Errors
     /// [`BusError`] if the router is elsewhere and does not respond, if its port belongs to another

@@ -43,7 +43,8 @@ pub trait Runtime: Send + Sync {
     fn notify(&self, address: usize);
 
     /// Waits until the value at `address` changes or the deadline passes (`None`: no deadline), and
-    /// returns whether time is left. Returns `None` if this runtime uses condition variables for waiting.
+    /// returns whether time is left. Returns `None` if this runtime uses condition variables for
+    /// waiting.
     fn wait(&self, address: usize, deadline: Option<Instant>) -> Option<bool>;
 
     /// Whether nodes can be reached through their own sockets, besides their sessions.

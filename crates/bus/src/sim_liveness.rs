@@ -91,8 +91,8 @@ impl SimLiveness {
         }
     }
 
-    /// Chooses a sim that is present now, regardless of which one was ours before. Returns whether one is
-    /// present.
+    /// Chooses a sim that is present now, regardless of which one was ours before. Returns whether
+    /// one is present.
     fn choose(&mut self) -> bool {
         (self.ours, self.is_replaced) = (self.tokens.first().cloned(), false);
         self.ours.is_some()

@@ -32,8 +32,9 @@ pub const HUB_RUNTIME: &str =
 /// once through one object that is not thread-safe: with two threads, rustls' state is overwritten
 /// and the process dies. Therefore one thread does everything.
 pub(crate) const KEYS_RUNTIME: &str =
-    // With two threads and sixteen agents in lockstep the sim died within a minute. Upstream, the stream should be
-    // split, or one lock held for both halves; QUIC, which has an object per direction, is the alternative.
+    // With two threads and sixteen agents in lockstep the sim died within a minute. Upstream, the
+    // stream should be split, or one lock held for both halves; QUIC, which has an object per
+    // direction, is the alternative.
     "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
 /// Restarts this program in the same process, with the same arguments and the threads required for

@@ -30,8 +30,8 @@ impl fmt::Display for UsageError {
 
 impl std::error::Error for UsageError {}
 
-/// Prints an error and returns the exit code: 2 for a mistake in the command line, as for errors of the argument
-/// parser, otherwise 1.
+/// Prints an error and returns the exit code: 2 for a mistake in the command line, as for errors of
+/// the argument parser, otherwise 1.
 pub fn report(error: &Error) -> ExitCode {
     let is_option = |problem: &Problem| problem.place().starts_with("--");
     let is_usage = |cause: &(dyn std::error::Error + 'static)| {

@@ -98,8 +98,8 @@ pub struct LeafArgs {
 }
 
 impl LeafArgs {
-    /// The gateways on this machine that a command may address. For a game elsewhere, these are that game's gateways. A
-    /// stop addresses too many rather than too few.
+    /// The gateways on this machine that a command may address. For a game elsewhere, these are
+    /// that game's gateways. A stop addresses too many rather than too few.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {

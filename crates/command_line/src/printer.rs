@@ -1,5 +1,5 @@
-//! A thread that prints a node's messages, so that neither a game nor a gateway blocks on a suspended terminal or an
-//! unread pipe.
+//! A thread that prints a node's messages, so that neither a game nor a gateway blocks on a
+//! suspended terminal or an unread pipe.
 
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
@@ -29,7 +29,8 @@ impl<M: Send + 'static> Printer<M> {
 
     /// Prints the last message, after all waiting ones.
     pub fn end(self, message: M) {
-        // The thread receives messages as long as this exists; if it panicked, it has reported that.
+        // The thread receives messages as long as this exists; if it panicked, it has reported
+        // that.
         drop(self.messages.send(message));
         drop(self.messages);
         drop(self.thread.join());

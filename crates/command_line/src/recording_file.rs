@@ -72,8 +72,8 @@ pub fn open(file: &Path, to: &str) -> Result<Recording> {
     Recording::of_bag(bag).with_context(|| format!("cannot {to} {}", file.display()))
 }
 
-/// Opens a recording of any kind, or the MOOS logs of a game: one, or all in a folder. A game file in the folder of the
-/// logs identifies the game.
+/// Opens a recording of any kind, or the MOOS logs of a game: one, or all in a folder. A game file
+/// in the folder of the logs identifies the game.
 pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     let opened = if file.is_dir() || alog::is_log(file) {
         let Logs { files, game } = logs(file)?;

@@ -31,8 +31,8 @@ pub fn install(kinds: &'static [Kind]) {
     );
 }
 
-/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes leave this to their
-/// parent.
+/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes
+/// leave this to their parent.
 pub fn announce(path: &Path) {
     static ANNOUNCED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let is_child = std::env::args_os().any(|word| word == "--for-parent");

@@ -28,9 +28,9 @@ impl Estimate {
         assert!(count > 0, "a mean needs values");
         let (mean, squares) = mean_and_squares(observations);
         let degrees = count as f64 - 1.0;
-        // Over seeds: all games with the same seed have the same sea, which may favour an entry from both sides and
-        // against all opponents alike. The interval covers other seeds, not other opponents, which are chosen and not
-        // drawn.
+        // Over seeds: all games with the same seed have the same sea, which may favour an entry
+        // from both sides and against all opponents alike. The interval covers other seeds, not
+        // other opponents, which are chosen and not drawn.
         let quantile = quantile(degrees).filter(|_| count >= OBSERVATIONS_MIN);
         let half = quantile.map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate {

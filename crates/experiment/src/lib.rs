@@ -2,8 +2,8 @@
 //!
 //! A plan lists the games. The pipeline plays them on all cores and returns a row for each, in
 //! order. Reports are made from rows: [`tournament`] ranks strategies and keeps the games of a
-//! league; [`sweep`] varies a scenario; [`whatif`] plays futures of a recorded game, and [`turning`]
-//! finds the moments that decided it.
+//! league; [`sweep`] varies a scenario; [`whatif`] plays futures of a recorded game, and
+//! [`turning`] finds the moments that decided it.
 
 mod checksum;
 mod estimate;

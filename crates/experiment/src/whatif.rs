@@ -1,4 +1,5 @@
-//! Futures of a recorded game: the same past up to a given time, and then other minds and other random numbers.
+//! Futures of a recorded game: the same past up to a given time, and then other minds and other
+//! random numbers.
 
 use crate::pipeline::{Game, play_in_order};
 use agent::MindRunner;
@@ -113,8 +114,8 @@ pub fn play(
     Ok(moment.end(changes, watch))
 }
 
-/// Plays futures numbered from 0: each as recorded and with the changes, both with the same random numbers.
-/// Passes the games to `take` in order.
+/// Plays futures numbered from 0: each as recorded and with the changes, both with the same random
+/// numbers. Passes the games to `take` in order.
 ///
 /// # Errors
 /// That of `take`, which ends the games, and the reason why a game cannot start.
@@ -144,6 +145,7 @@ pub fn compare(
 
 /// The seed of a future.
 pub fn seed_of(past: &Past, future: usize) -> u64 {
-    // Far from the seeds that people use, so that the first future is not that of another recorded game.
+    // Far from the seeds that people use, so that the first future is not that of another recorded
+    // game.
     past.scenario.seed.wrapping_add(1_000_003 + future as u64) & (i64::MAX as u64)
 }

@@ -1,5 +1,5 @@
-//! A sweep in a folder, complete or interrupted and resumed, on any number of threads. Errors are reported before any
-//! game.
+//! A sweep in a folder, complete or interrupted and resumed, on any number of threads. Errors are
+//! reported before any game.
 
 use experiment::sweep::Sweep;
 use experiment::sweep::{self, Plan, Study, StudyError};

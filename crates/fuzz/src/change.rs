@@ -121,8 +121,8 @@ fn kind(piece: &[u8]) -> [bool; 2] {
     [u8::is_ascii_alphabetic, u8::is_ascii_digit].map(|is| piece.first().is_some_and(is))
 }
 
-/// Overwrites a random place with a piece, as far as it fits. Numbers lie at multiples of their size
-/// after the four bytes of the encapsulation, or anywhere.
+/// Overwrites a random place with a piece, as far as it fits. Numbers lie at multiples of their
+/// size after the four bytes of the encapsulation, or anywhere.
 fn put(bytes: &mut [u8], piece: &[u8], dice: &mut Dice) {
     let step = match dice.roll(4) {
         0 => 1,

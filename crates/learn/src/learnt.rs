@@ -15,8 +15,8 @@ pub struct Learnt {
     pub divergence: Option<f32>,
     /// Fraction of clipped samples.
     pub clipped: Option<f32>,
-    /// Fraction of the returns' variance that the critic explained before the update: 1 for a perfect
-    /// critic, at most 0 for a useless one.
+    /// Fraction of the returns' variance that the critic explained before the update: 1 for a
+    /// perfect critic, at most 0 for a useless one.
     pub explained_variance: Option<f32>,
     /// Epochs; with a replay buffer, samples drawn per sample stored.
     pub epochs: Option<f32>,

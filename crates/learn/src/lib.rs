@@ -2,8 +2,8 @@
 //!
 //! [`environment`] offers games as environments, alone or in parallel batches. [`train`] runs the
 //! training runs that [`training`] files define, with PPO ([`ppo`]), TD3 or double DQN
-//! ([`off_policy`]). [`rewards`] files define the rewards. Everything is bit-for-bit reproducible on any number of
-//! threads.
+//! ([`off_policy`]). [`rewards`] files define the rewards. Everything is bit-for-bit reproducible
+//! on any number of threads.
 
 pub mod environment;
 mod learnt;

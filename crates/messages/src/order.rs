@@ -23,8 +23,8 @@ pub enum Order {
         /// Starboard thruster.
         starboard: f64,
     },
-    /// The front seat's controllers turn continuously: at every tick, the ordered heading is this far from the current
-    /// one.
+    /// The front seat's controllers turn continuously: at every tick, the ordered heading is this
+    /// far from the current one.
     Turn {
         /// Change of heading, radians clockwise, -pi to pi: half a turn to either side is two
         /// different orders.

@@ -87,8 +87,9 @@ impl BackSeat {
         }
     }
 
-    /// The order now: thrust and rudder before heading and speed, because a controller that converts the latter to the
-    /// former runs after the helm. Without a complete pair of requests younger than `ttl_s`, the boat holds.
+    /// The order now: thrust and rudder before heading and speed, because a controller that
+    /// converts the latter to the former runs after the helm. Without a complete pair of requests
+    /// younger than `ttl_s`, the boat holds.
     pub(crate) fn order(&mut self, now: SimTime, ttl_s: f64) -> Order {
         if self.is_undeployed || self.is_overridden || self.all_stop.is_some() {
             return Order::Hold;

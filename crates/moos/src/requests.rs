@@ -77,8 +77,8 @@ impl Requests {
         }
     }
 
-    /// The replies after a picture: the referee's decisions, requested or not, and requests that were not granted in
-    /// time.
+    /// The replies after a picture: the referee's decisions, requested or not, and requests that
+    /// were not granted in time.
     pub(crate) fn judge(
         &mut self,
         scenario: &Scenario,

@@ -350,7 +350,8 @@ const HEARD_MAX: usize = 1024;
 /// Maximum length of a drawing for the shoreside, bytes.
 const DRAWING_MAX: usize = 8 << 10;
 
-/// Keeps the newest value of each variable, but all drawings, because one variable draws many things.
+/// Keeps the newest value of each variable, but all drawings, because one variable draws many
+/// things.
 pub(crate) fn keep(heard: &mut BTreeMap<String, Msg>, msg: Msg) {
     let is_drawing = DRAWINGS.contains(&msg.key.as_str());
     let key = match msg.as_text() {

@@ -210,8 +210,8 @@ impl Planner {
         })
     }
 
-    /// Evaluates the steps from number `first` on, which read only constants, and removes them and their values from
-    /// the plan.
+    /// Evaluates the steps from number `first` on, which read only constants, and removes them and
+    /// their values from the plan.
     pub(super) fn fold(
         &mut self,
         first: usize,

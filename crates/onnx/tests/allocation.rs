@@ -1,7 +1,7 @@
 //! Networks allocate nothing in an evaluation, and little while a file is read.
 //!
-//! `stats_alloc` counts (see `sim/tests/allocation.rs`). There is a single test because the count covers the whole
-//! process.
+//! `stats_alloc` counts (see `sim/tests/allocation.rs`). There is a single test because the count
+//! covers the whole process.
 
 use onnx::Network;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};

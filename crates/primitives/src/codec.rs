@@ -62,8 +62,8 @@ pub fn encode_plain<T: Serialize>(message: &T) -> Vec<u8> {
     bytes
 }
 
-/// Decodes a message from another system, which has no stamp; `None` if it has a different layout. Up to
-/// three bytes of padding may follow.
+/// Decodes a message from another system, which has no stamp; `None` if it has a different layout.
+/// Up to three bytes of padding may follow.
 pub fn decode_plain<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let body = bytes.strip_prefix(&ENCAPSULATION)?;
     let (message, used) = cdr_encoding::from_bytes::<T, LittleEndian>(body).ok()?;

@@ -63,8 +63,8 @@ pub fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Formats a number to `places` decimal places; −0.0 becomes 0, because text comparisons distinguish
-/// them.
+/// Formats a number to `places` decimal places; −0.0 becomes 0, because text comparisons
+/// distinguish them.
 pub fn decimal(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");
     if text.trim_start_matches(['-', '0', '.']).is_empty() {

@@ -1,4 +1,5 @@
-//! Writes a user's output file. Does not wait for a reader: a named pipe without a reader is an error.
+//! Writes a user's output file. Does not wait for a reader: a named pipe without a reader is an
+//! error.
 
 use rustix::fs::OFlags;
 use std::fs::{File, OpenOptions};

@@ -83,9 +83,9 @@ impl TimedNoise {
     /// The noise for draws at `now`.
     #[inline]
     pub fn at(&self, now: SimTime) -> Noise {
-        // A new key from a time on, instead of a snapshot. This replays the past, which at most doubles the time of a
-        // branch. In return, a branch is a game like any other, with a seed and a key on the command line, minds
-        // included.
+        // A new key from a time on, instead of a snapshot. This replays the past, which at most
+        // doubles the time of a branch. In return, a branch is a game like any other, with a seed
+        // and a key on the command line, minds included.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
         self.later
             .iter()

@@ -6,8 +6,8 @@ use std::ops::{Add, Mul, Sub};
 
 /// A time or duration in simulated nanoseconds.
 ///
-/// With integers, ten thousand ticks of 50 ms are exactly 500 s on every machine. Sums saturate at 292 years, because
-/// times also come from files and other nodes.
+/// With integers, ten thousand ticks of 50 ms are exactly 500 s on every machine. Sums saturate at
+/// 292 years, because times also come from files and other nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct SimTime(pub i64);

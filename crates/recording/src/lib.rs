@@ -18,9 +18,9 @@
 //! All messages are CDR, as the profile `ros2` demands: either one of ours, or a JSON object as the
 //! text of a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,
 //! counted from the UTC at which the recording began; `publish_time` is UTC when the message was
-//! recorded. Both are in ns since 1970. `sequence` counts messages within a topic. Schemas are complete ROS
-//! 2 message definitions. Chunks are not compressed and are written whole, so that a truncated file
-//! is valid up to its last chunk.
+//! recorded. Both are in ns since 1970. `sequence` counts messages within a topic. Schemas are
+//! complete ROS 2 message definitions. Chunks are not compressed and are written whole, so that a
+//! truncated file is valid up to its last chunk.
 //!
 //! The first metadata is the header, with its own checksum: `squall` for a game (version, commit,
 //! game, pace, seed, scenario, waves), `gateway` for a gateway (version, commit, boat, plan). A

@@ -53,8 +53,8 @@ impl NewFile {
     /// # Errors
     /// As [`NewFile::create`].
     pub fn create_numbered(folder: &Path, stem: &str) -> Result<NewFile, RecordError> {
-        // Creating the file reserves its name. If the name were only checked, another program could create it in the
-        // meantime.
+        // Creating the file reserves its name. If the name were only checked, another program could
+        // create it in the meantime.
         let mut created = NewFile::create(&folder.join(format!("{stem}.mcap")));
         for number in 2..=NAMES_MAX {
             match created {

@@ -14,7 +14,8 @@ use std::time::{Duration, Instant};
 /// Period of flushes to the system. Each flush closes a chunk, whose index entry stays in memory
 /// until the file ends, about 500 bytes. At four per second, that came to 5 MB an hour.
 const FLUSH: Duration = Duration::from_secs(1);
-/// Time for which entries accumulate: waking for each one would cost the game more than writing does.
+/// Time for which entries accumulate: waking for each one would cost the game more than writing
+/// does.
 const GATHER: Duration = Duration::from_millis(20);
 /// Size of the write buffer, bytes.
 const BUFFER: usize = 1 << 16;

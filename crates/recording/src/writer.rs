@@ -105,8 +105,8 @@ impl<W: Write + Seek> Writer<W> {
             .profile("ros2")
             .library(format!("squall {}", primitives::VERSION));
         // A chunk is written only when complete, so the file on disk never needs repair. With
-        // compression (zlib), a 2v2 game would be a quarter to half the size. But that needs C, and a truncated file
-        // would lose everything from the truncated chunk on.
+        // compression (zlib), a 2v2 game would be a quarter to half the size. But that needs C, and
+        // a truncated file would lose everything from the truncated chunk on.
         let options = options
             .compression(None)
             .chunk_size(Some(CHUNK))

@@ -102,7 +102,8 @@ pub fn field(scenario: &Scenario, at: SimTime) -> MarkerArray {
     MarkerArray { markers }
 }
 
-/// Moving parts: boats as arrows of their length, and flags as spheres, at home or on their carrier.
+/// Moving parts: boats as arrows of their length, and flags as spheres, at home or on their
+/// carrier.
 pub fn game(scenario: &Scenario, frame: &Frame) -> MarkerArray {
     let at = frame.stamp.valid_ns;
     let boats = frame

@@ -8,8 +8,8 @@ use messages::{VehicleOrder, order};
 use primitives::{SimTime, VehicleId, angle::wrap_pi};
 use std::f64::consts::FRAC_PI_3;
 
-/// How far the ordered heading may lead the boat's own, rad. A boat that cannot turn as fast as requested would
-/// otherwise continue turning after the request has ended.
+/// How far the ordered heading may lead the boat's own, rad. A boat that cannot turn as fast as
+/// requested would otherwise continue turning after the request has ended.
 const LEAD_MAX_RAD: f64 = FRAC_PI_3;
 /// Maximum yaw rate that a twist may request, rad/s.
 const YAW_RATE_MAX_RAD_S: f64 = 10.0;
@@ -29,7 +29,8 @@ pub enum SetPoint {
 }
 
 impl SetPoint {
-    /// The request in a `geometry_msgs/Twist`: `linear.x` and `angular.z`. Boats cannot follow the other components.
+    /// The request in a `geometry_msgs/Twist`: `linear.x` and `angular.z`. Boats cannot follow the
+    /// other components.
     ///
     /// # Errors
     /// [`Refusal::BadNumber`] if a number is out of range. Boats have no controlled speed astern.

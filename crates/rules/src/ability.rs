@@ -36,7 +36,8 @@ impl Rules {
         tagged_at + self.tag_cooldown
     }
 
-    /// Remaining wait until `tag_ready` as a fraction of the tag cooldown, 0 to 1. A cooldown below 1 s counts as 1 s.
+    /// Remaining wait until `tag_ready` as a fraction of the tag cooldown, 0 to 1. A cooldown below
+    /// 1 s counts as 1 s.
     pub fn tag_wait_share(&self, tag_ready: SimTime, now: SimTime) -> f64 {
         (tag_wait_s(tag_ready, now) / self.tag_cooldown.as_s().max(1.0)).min(1.0)
     }

@@ -12,7 +12,8 @@ pub enum Directive {
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// It is tagged and driven straight home at this fraction of its top speed; its mind is ignored.
+    /// It is tagged and driven straight home at this fraction of its top speed; its mind is
+    /// ignored.
     DrivenHome {
         /// The untag place.
         to: Ned,

@@ -253,8 +253,8 @@ const COLUMNS: [(&str, f64); 5] = [
     ("S", 0.75),
     ("SS", 1.0),
 ];
-/// The rows of the named points, from one's own end: back, flag, half, mid, centre, and their mirror
-/// images.
+/// The rows of the named points, from one's own end: back, flag, half, mid, centre, and their
+/// mirror images.
 const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
 
 impl Field {

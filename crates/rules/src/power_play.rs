@@ -8,8 +8,8 @@ use primitives::time::SimTime;
 
 impl Referee {
     /// Draws one boat of each team and its time out of action. All team orders and all positions of
-    /// the windows that fit into the game without overlap are equally likely. In a game too short for all windows, they
-    /// divide its time between them.
+    /// the windows that fit into the game without overlap are equally likely. In a game too short
+    /// for all windows, they divide its time between them.
     pub(super) fn draw_power_plays(&self, standing: &mut Standing, stream: &mut Stream) {
         if self.rules.power_play <= SimTime::ZERO {
             return;

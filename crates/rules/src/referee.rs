@@ -63,8 +63,8 @@ impl Referee {
     ///
     /// The order of the list below is the order of resolution. Every phase is judged by the
     /// standing at its start, whatever the order of the boats: mirrored teams get mirrored results.
-    /// Results of this look take effect from the next one on: a flag brought home cannot be grabbed yet,
-    /// a grabbed flag cannot be captured yet, a tagged boat cannot be untagged yet.
+    /// Results of this look take effect from the next one on: a flag brought home cannot be grabbed
+    /// yet, a grabbed flag cannot be captured yet, a tagged boat cannot be untagged yet.
     /// [`Resolution::InTurn`] uses another order, for comparison with Pyquaticus.
     ///
     /// Nothing happens after the end of the game.

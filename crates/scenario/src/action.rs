@@ -85,7 +85,8 @@ pub fn probabilities(logits: &[f32]) -> Vec<f32> {
 /// The request that an action makes to a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SetPoint {
-    /// Desired turn, rad clockwise, -pi to pi: half a turn to either side is two different requests.
+    /// Desired turn, rad clockwise, -pi to pi: half a turn to either side is two different
+    /// requests.
     pub turn_rad: f64,
     /// Desired course after this turn from the heading at the decision, rad clockwise from north.
     pub course_rad: f64,

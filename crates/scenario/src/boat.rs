@@ -329,7 +329,8 @@ pub struct Ventilation {
 pub enum ThrustCurve {
     /// A propeller: the setting is the shaft speed n, rad/s, and the lag acts on n.
     Propeller(Propeller),
-    /// A measured table; the setting is the fraction of full ahead, −1 to 1, and the lag acts on it.
+    /// A measured table; the setting is the fraction of full ahead, −1 to 1, and the lag acts on
+    /// it.
     Table {
         /// (setting, thrust in N), both rising strictly, with (0, 0) among them.
         points: Vec<(f64, f64)>,

@@ -28,8 +28,8 @@ pub(super) fn note_override(path: &Path, bytes: &[u8], built_in: &[u8]) {
 /// The built-in replacement for a missing file in a folder of `scenarios`, such as
 /// `scenarios/seas/gale.toml`, however the path is written.
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
-    // A path typed within `scenarios` lacks that folder's name. Without a working folder, there is only what
-    // was typed.
+    // A path typed within `scenarios` lacks that folder's name. Without a working folder, there is
+    // only what was typed.
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut parts = vec![];
     for component in whole.components() {

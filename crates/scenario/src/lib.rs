@@ -3,8 +3,8 @@
 //! [`Scenario`] is the checked form, in SI and radians, and is sent to every process that joins the
 //! game. [`load`] creates it. Its types and those in `raw` declare the keys of files, and `schema`
 //! generates their JSON Schemas. `read` finds the files and merges them with their bases,
-//! `validate` reads them by their schema, and `check` converts them to the checked types. A `Loader`
-//! is the context of one reading; its `diagnostics` collect every [`Problem`].
+//! `validate` reads them by their schema, and `check` converts them to the checked types. A
+//! `Loader` is the context of one reading; its `diagnostics` collect every [`Problem`].
 
 pub mod action;
 pub mod boat;

@@ -41,8 +41,8 @@ struct Section {
     text: String,
 }
 
-/// Collects the section of the keys at `path`, already described as `said`, and those of the tables in it. Equal tables
-/// share a section.
+/// Collects the section of the keys at `path`, already described as `said`, and those of the tables
+/// in it. Equal tables share a section.
 fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said): (&Value, &str)) {
     let mut text = in_a_line(about.get(TABLE).unwrap_or(&about["description"]));
     text = if text.is_empty() || text == said {

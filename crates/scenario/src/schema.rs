@@ -102,8 +102,8 @@ pub(super) const DRAWN: &str = "x-drawn";
 pub(super) const TABLE: &str = "x-table";
 
 /// Converts the schema of a table for editors: without Squall's own marks, with distributions where
-/// they are allowed, and each description in one line. Keys are required in entries of lists only, except those that default to an
-/// empty list or a table of defaults.
+/// they are allowed, and each description in one line. Keys are required in entries of lists only,
+/// except those that default to an empty list or a table of defaults.
 fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     let object = match value {
         Value::Array(items) => {

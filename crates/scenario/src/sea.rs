@@ -171,8 +171,8 @@ pub struct Tide {
     pub flood_m_s: Ned,
     /// Period, s; that of the moon's principal tide is 12.42 h.
     pub period_s: f64,
-    /// Phase at the start of the game, as a fraction of the period: 0 and 1 are slack water before the
-    /// flood.
+    /// Phase at the start of the game, as a fraction of the period: 0 and 1 are slack water before
+    /// the flood.
     pub phase: f64,
 }
 

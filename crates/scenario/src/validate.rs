@@ -53,9 +53,10 @@ struct Validator<'a> {
 impl<'a> Validator<'a> {
     /// The value of `node`, if it satisfies the schema.
     fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
-        // The crate `jsonschema` is not suitable: it checks JSON values, which have no positions and cannot be NaN. If
-        // a table fits none of several kinds, it reports only that. It also depends on regular expressions, host names
-        // and big fractions. This file covers the part of JSON Schema that Squall's types use.
+        // The crate `jsonschema` is not suitable: it checks JSON values, which have no positions
+        // and cannot be NaN. If a table fits none of several kinds, it reports only that. It also
+        // depends on regular expressions, host names and big fractions. This file covers the part
+        // of JSON Schema that Squall's types use.
         if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
             return match branches.iter().find(|branch| self.fits(node, branch)) {
                 Some(branch) => self.value(node, branch),

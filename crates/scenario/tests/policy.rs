@@ -135,8 +135,8 @@ fn of_several_outputs_the_one_that_fits_makes_the_action() {
     }
 }
 
-/// A policy trained by Stable-Baselines3 on the observations of Pyquaticus and exported by PyTorch: an entirely
-/// third-party file.
+/// A policy trained by Stable-Baselines3 on the observations of Pyquaticus and exported by PyTorch:
+/// an entirely third-party file.
 #[test]
 fn a_model_of_another_trainer_loads() {
     let said = PartialSpec {

@@ -195,7 +195,8 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
     assert_eq!(followed(&load(&game).unwrap()), [four, three].concat());
     let there = exchanged(&game, Overrides::default()).unwrap();
     assert_eq!(followed(&there), [three, four].concat());
-    // They are exchanged in games with other seeds too, including those that override one team's strategy.
+    // They are exchanged in games with other seeds too, including those that override one team's
+    // strategy.
     assert_eq!(followed(&there.of_seed(9).unwrap()), followed(&there));
     let idle = instead(&[("blue", shipped("strategies/idle.toml"))]);
     let idle = exchanged(&game, idle).unwrap();

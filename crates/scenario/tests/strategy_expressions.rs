@@ -1,4 +1,5 @@
-//! Expressions in strategy files have the meaning they have in CEL, print as typed, and survive serialisation.
+//! Expressions in strategy files have the meaning they have in CEL, print as typed, and survive
+//! serialisation.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 

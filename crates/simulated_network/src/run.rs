@@ -37,8 +37,9 @@ impl SimulatedNetwork {
         bus::replace_runtime(&SimulatedRuntime);
         let state = State {
             conditions,
-            // turmoil and madsim simulate tokio, whose sockets and tasks neither our nodes nor zenoh use; shuttle has
-            // no time, and our protocols rely on timeouts. Hence our own network, beneath the same `Bus`.
+            // turmoil and madsim simulate tokio, whose sockets and tasks neither our nodes nor
+            // zenoh use; shuttle has no time, and our protocols rely on timeouts. Hence our own
+            // network, beneath the same `Bus`.
             stream: Stream::new(seed, "network"),
             now_ns: 0,
             limit_ns: 0,

@@ -17,13 +17,14 @@ use strum::{EnumString, IntoStaticStr, VariantNames};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
 #[strum(serialize_all = "snake_case")]
 pub enum Manoeuvre {
-    /// From a straight approach, the inner thruster stops and the outer one is unchanged (kinematic: full rudder,
-    /// thrust unchanged), for two turns.
+    /// From a straight approach, the inner thruster stops and the outer one is unchanged
+    /// (kinematic: full rudder, thrust unchanged), for two turns.
     TurningCircle,
-    /// From a straight approach, differential thrust (kinematic: rudder) is applied to starboard; each time the heading
-    /// passes the angle on that side, it is reversed.
+    /// From a straight approach, differential thrust (kinematic: rudder) is applied to starboard;
+    /// each time the heading passes the angle on that side, it is reversed.
     Zigzag,
-    /// From a straight approach, full astern until the boat is dead in the water (which may itself drift).
+    /// From a straight approach, full astern until the boat is dead in the water (which may itself
+    /// drift).
     CrashStop,
     /// Full ahead from rest, until the speed is steady.
     Acceleration,
@@ -58,7 +59,8 @@ pub struct Plan {
     pub side: f64,
     /// The heading at which a zigzag switches, rad.
     pub switch_rad: f64,
-    /// The difference between the thrusters in a zigzag, or its rudder angle, as a fraction of full.
+    /// The difference between the thrusters in a zigzag, or its rudder angle, as a fraction of
+    /// full.
     pub differential: f64,
     /// The duration, s; `None`: until the manoeuvre is over.
     pub duration_s: Option<f64>,
@@ -99,7 +101,8 @@ struct Helm {
 }
 
 impl Helm {
-    /// Thrusters at these fractions, or half their sum as thrust and half their difference as rudder.
+    /// Thrusters at these fractions, or half their sum as thrust and half their difference as
+    /// rudder.
     fn apart(self, port: f64, starboard: f64) -> Command {
         if self.is_kinematic {
             return Command::Impose {
@@ -186,7 +189,8 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
     }
 }
 
-/// The straight approach. Returns the speed at its end, m/s, and the throttle as a fraction of full.
+/// The straight approach. Returns the speed at its end, m/s, and the throttle as a fraction of
+/// full.
 fn approach(
     boat: &Boat,
     trial_boat: &mut TrialBoat,

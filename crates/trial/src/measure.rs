@@ -61,8 +61,8 @@ fn mean(samples: &[Sample], of: impl Fn(&Sample) -> f64) -> f64 {
 }
 
 /// Advance, transfer and tactical diameter as in MSC.137(76): at a heading change of 90° and 180°,
-/// of midships, from the position where the thrusters were set. Steady values are means over the last whole
-/// turn.
+/// of midships, from the position where the thrusters were set. Steady values are means over the
+/// last whole turn.
 fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let first = |angle_rad: f64| {

@@ -93,7 +93,8 @@ pub fn write_csv(
     writer.flush()
 }
 
-/// A number to its significant decimal places: a micrometre is far below any known accuracy of a boat.
+/// A number to its significant decimal places: a micrometre is far below any known accuracy of a
+/// boat.
 fn text(number: f64, is_time: bool) -> String {
     decimal(number, if is_time { 3 } else { 9 })
 }

@@ -1,7 +1,7 @@
 //! A table from users: a line of names, then numbers. Errors give file, line and column.
 //!
-//! Reads the output of loggers and spreadsheets: columns separated by commas, semicolons or tabs, decimal commas,
-//! UTF-16, a line of units, and a last line truncated by a power loss.
+//! Reads the output of loggers and spreadsheets: columns separated by commas, semicolons or tabs,
+//! decimal commas, UTF-16, a line of units, and a last line truncated by a power loss.
 
 use primitives::input_file::utf_8;
 use std::io::Read;
@@ -159,8 +159,8 @@ impl Sheet {
         MISSING.contains(&self.text(row, column).to_lowercase().as_str())
     }
 
-    /// Whether a row (the first) contains the units of the columns. Its cells repeat the ends of their
-    /// names, or are empty.
+    /// Whether a row (the first) contains the units of the columns. Its cells repeat the ends of
+    /// their names, or are empty.
     fn are_units(&self, record: &csv::StringRecord, line: u64) -> Result<bool, Mistake> {
         let is_word = |cell: &str| {
             self.parse(cell).is_none() && !MISSING.contains(&cell.to_lowercase().as_str())
@@ -281,8 +281,8 @@ impl Sheet {
     }
 }
 
-/// The line of a record. The reader returns the end of the previous record, which may be followed by blank lines and
-/// comments.
+/// The line of a record. The reader returns the end of the previous record, which may be followed
+/// by blank lines and comments.
 fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
     let lines = rest

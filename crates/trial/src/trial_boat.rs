@@ -168,8 +168,8 @@ fn in_body(psi_rad: f64, ned: Ned) -> Body {
     frame::body_from_ned(Rotation::from_heading(psi_rad), ned)
 }
 
-/// A kinematic boat uses half the sum of two fractions as thrust and half their difference as rudder; full thrust and
-/// half rudder need a fraction beyond 1.
+/// A kinematic boat uses half the sum of two fractions as thrust and half their difference as
+/// rudder; full thrust and half rudder need a fraction beyond 1.
 fn order(command: Command) -> Order {
     match command {
         Command::Thrust { port, starboard } => Order::Thrust { port, starboard },

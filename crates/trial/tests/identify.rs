@@ -1,4 +1,5 @@
-//! Identification recovers known parameters from noisy data, and detects logs that do not determine them.
+//! Identification recovers known parameters from noisy data, and detects logs that do not determine
+//! them.
 
 use primitives::SimTime;
 use primitives::stream::Stream;

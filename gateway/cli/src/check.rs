@@ -47,7 +47,8 @@ pub struct Args {
     /// conservative limits]
     #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
-    /// Guides you through a compass swing and a propeller test by remote control; asks before each step
+    /// Guides you through a compass swing and a propeller test by remote control; asks before each
+    /// step
     #[arg(long, requires = "vehicle")]
     guided: bool,
     /// Writes the report to this JSON file, and a text copy to a .txt file beside it [default:

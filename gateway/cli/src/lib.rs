@@ -1,4 +1,5 @@
-//! The commands of the boat's program: connect a real boat to a game, check it, stop it and command it.
+//! The commands of the boat's program: connect a real boat to a game, check it, stop it and command
+//! it.
 //!
 //! `squall gateway` has the same commands. Open `surveyor.rs` first: it drives a boat.
 

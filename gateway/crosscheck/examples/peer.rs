@@ -1,7 +1,8 @@
 //! Our codec as a peer of `pynmea2_check.py`: `peer write` writes sentences of every kind with
 //! their values, `peer read` prints the values that it reads in the lines of its input.
 //!
-//! The values of a sentence form a line of tab-separated `name=value` pairs, as `Debug` prints them.
+//! The values of a sentence form a line of tab-separated `name=value` pairs, as `Debug` prints
+//! them.
 
 #[allow(dead_code, reason = "the tests of the codec use more of it")]
 #[path = "../../tests/nmea/sentences.rs"]

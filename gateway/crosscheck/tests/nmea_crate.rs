@@ -1,7 +1,7 @@
 //! The nmea crate reads what we write, and we read what it reads, with the same values.
 //!
-//! It has no writer. The sentences of the second test are therefore assembled here, with the variations found among
-//! devices: leading zeros, more or fewer decimal places, and empty fields.
+//! It has no writer. The sentences of the second test are therefore assembled here, with the
+//! variations found among devices: leading zeros, more or fewer decimal places, and empty fields.
 
 #[allow(dead_code, reason = "the tests of the codec use more of it")]
 #[path = "../../tests/nmea/sentences.rs"]
@@ -16,7 +16,8 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use sentences::{Domain, on_the_globe, standard_sentences};
 
-/// Half of the last digit that we write, plus a little: the crate computes most numbers in single precision.
+/// Half of the last digit that we write, plus a little: the crate computes most numbers in single
+/// precision.
 const TENTH: f64 = 0.0501;
 const HUNDREDTH: f64 = 0.00502;
 const POSITION_DEG: f64 = 0.000_005_01 / 60.0;

@@ -29,8 +29,8 @@ struct Alarm {
 }
 
 impl Alarm {
-    /// Records the size of the current fault, if any. Returns a warning with this text when it has lasted for
-    /// `debounce_s`, and a remark with its name when it ends.
+    /// Records the size of the current fault, if any. Returns a warning with this text when it has
+    /// lasted for `debounce_s`, and a remark with its name when it ends.
     fn note(
         &mut self,
         now: SimTime,

@@ -1,7 +1,7 @@
 //! Compares the commands that a boat echoes with those that it was sent.
 //!
-//! A boat that keeps echoing an outdated command no longer listens. If it has echoed our commands and then echoes one
-//! that it was never sent, someone else is sending it orders at the same port.
+//! A boat that keeps echoing an outdated command no longer listens. If it has echoed our commands
+//! and then echoes one that it was never sent, someone else is sending it orders at the same port.
 
 use crate::config::ControlWatch;
 use crate::nmea::Mode;
@@ -10,7 +10,8 @@ use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use std::collections::VecDeque;
 
-/// Tolerances for equal speeds and headings in mode G, kn and degrees: ArduPilot drops all decimal places.
+/// Tolerances for equal speeds and headings in mode G, kn and degrees: ArduPilot drops all decimal
+/// places.
 const SAME_SPEED_KN: f64 = 0.1;
 const SAME_HEADING_DEG: f64 = 1.1;
 /// If the boat drops from our commands to standby this many times within this period, s, and
@@ -154,8 +155,9 @@ impl CommandEcho {
         }
     }
 
-    /// Whether thrust and difference lie between the last reported and the last sent values. This is the case for a
-    /// boat that reports the applied thrust, which lags, instead of its command. Another gateway's set-points jump.
+    /// Whether thrust and difference lie between the last reported and the last sent values. This
+    /// is the case for a boat that reports the applied thrust, which lags, instead of its command.
+    /// Another gateway's set-points jump.
     fn is_on_its_way(&self, shown: &Shown) -> bool {
         let Some(last) = self
             .last

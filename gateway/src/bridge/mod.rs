@@ -484,8 +484,8 @@ impl Bridge {
         } else {
             command
         };
-        // Thrust goes to zero before any command that is not our own set-point. How a Surveyor treats its last thrust
-        // when it leaves mode T is not published.
+        // Thrust goes to zero before any command that is not our own set-point. How a Surveyor
+        // treats its last thrust when it leaves mode T is not published.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
             self.protocol.write(now, Command::Zero, &mut out.bytes);

@@ -19,7 +19,8 @@ pub(super) struct Counters {
 
 impl Bridge {
     /// The status now, with the conditions missing at the last step. Changes nothing, so queries do
-    /// not affect a replay. The shell adds data known only to it: link name, control port, latencies.
+    /// not affect a replay. The shell adds data known only to it: link name, control port,
+    /// latencies.
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self
             .on_site

@@ -24,8 +24,9 @@ pub(super) struct Pack {
 }
 
 impl Pack {
-    /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats reported 24.8 V with 15433
-    /// of 57741 left, which matches seven lithium cells at that charge if the count is in mAh.
+    /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats
+    /// reported 24.8 V with 15433 of 57741 left, which matches seven lithium cells at that charge
+    /// if the count is in mAh.
     pub(super) const SURVEYOR: Pack = Pack {
         cells: 7.0,
         capacity_ah: 57.741,

@@ -167,8 +167,8 @@ impl Emulator {
             Port::Secondary => self.operator == Operator::Secondary,
         };
         match sentence {
-            // Silently counted and ignored, so a back seat that does not check which operator is in control does not
-            // notice.
+            // Silently counted and ignored, so a back seat that does not check which operator is in
+            // control does not notice.
             Sentence::Command(_) if !in_control => self.ignored += 1,
             Sentence::Command(command) => {
                 self.followed += 1;

@@ -74,8 +74,8 @@ impl FixReport {
                 .has_fix(now)
                 .then(|| boat.frame.lat_lon(nav.at())),
             psi_rad: nav.psi_rad,
-            // Blank, not zero: a reader that treated a missing course as north would get the velocity of a boat at rest
-            // wrong.
+            // Blank, not zero: a reader that treated a missing course as north would get the
+            // velocity of a boat at rest wrong.
             course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| velocity.direction_rad()),
             speed_m_s,
         }

@@ -21,7 +21,8 @@ use std::time::Duration;
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// How often an attempt is polled.
-// A blocking connect cannot be interrupted: a gateway asked to exit would wait for an unresponsive address.
+// A blocking connect cannot be interrupted: a gateway asked to exit would wait for an unresponsive
+// address.
 const POLL: Duration = Duration::from_millis(5);
 
 /// Maximum unacknowledged bytes of a TCP connection, and how long they may stay so before it counts

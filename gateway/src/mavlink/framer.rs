@@ -207,8 +207,8 @@ impl Framer {
         &self.counts
     }
 
-    /// Skips bytes that begin like a frame of an unknown message; returns the number of bytes consumed,
-    /// 0 while undecided.
+    /// Skips bytes that begin like a frame of an unknown message; returns the number of bytes
+    /// consumed, 0 while undecided.
     fn pass_unknown(&mut self, layout: &Layout, bytes: &[u8]) -> usize {
         // A checksum includes a byte that only the message's definition contains, so it cannot be
         // checked for an unknown message. Noise that looks like its start is detected by a valid

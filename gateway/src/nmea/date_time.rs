@@ -9,8 +9,8 @@ const DAY_MS: u32 = 86_400_000;
 
 /// A time of day, UTC, in milliseconds since midnight.
 ///
-/// Written to two decimal places, or three if the milliseconds need them. A leap second is 86 400 000
-/// to 86 400 999; larger values are written as an empty field.
+/// Written to two decimal places, or three if the milliseconds need them. A leap second is 86 400
+/// 000 to 86 400 999; larger values are written as an empty field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct TimeOfDay(pub u32);
 

@@ -32,7 +32,8 @@ pub(super) enum Field<'a> {
     Required(&'a mut f64, Format, &'static str),
     /// A number that is read but written as an empty field.
     ReadOnly(&'a mut Option<f64>),
-    /// Two fields: a magnitude to one decimal place, and `E` for a positive or `W` for a negative number.
+    /// Two fields: a magnitude to one decimal place, and `E` for a positive or `W` for a negative
+    /// number.
     East(&'a mut Option<f64>),
     /// An optional small integer, zero-padded to this width.
     Whole(&'a mut Option<u8>, usize),
@@ -48,7 +49,8 @@ pub(super) enum Field<'a> {
     Mode(&'a mut Mode),
     /// An optional operator number.
     Operator(&'a mut Option<Operator>),
-    /// `A` for a valid fix, `V` for an invalid one; its mode indicator comes this many fields later.
+    /// `A` for a valid fix, `V` for an invalid one; its mode indicator comes this many fields
+    /// later.
     ValidFix(&'a mut bool, usize),
     /// An optional time `hhmmss.ss`.
     Time(&'a mut Option<TimeOfDay>),

@@ -144,8 +144,8 @@ impl Sentence {
         Writer::line(rounded.layout())
     }
 
-    /// An empty sentence with this address: a proprietary one of the Surveyor, or a standard one with a two-character
-    /// talker.
+    /// An empty sentence with this address: a proprietary one of the Surveyor, or a standard one
+    /// with a two-character talker.
     fn blank(address: &str) -> Option<Sentence> {
         Some(
             match (address, Talker::split(address).map_or("", |(_, kind)| kind)) {

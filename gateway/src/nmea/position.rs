@@ -55,8 +55,8 @@ impl Axis {
         (size_deg <= f64::from(self.degrees_max)).then_some(size_deg)
     }
 
-    /// `ddmm.mmmm,N` with this many decimal places of minutes. Splits an integer number of steps, so that
-    /// minutes carry into degrees.
+    /// `ddmm.mmmm,N` with this many decimal places of minutes. Splits an integer number of steps,
+    /// so that minutes carry into degrees.
     pub(super) fn printed(&self, angle_deg: f64, decimals: u32) -> Option<String> {
         if !angle_deg.is_finite() || angle_deg.abs() > f64::from(self.degrees_max) {
             return None;

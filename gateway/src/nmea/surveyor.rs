@@ -42,8 +42,8 @@ impl Command {
                 zeros(&self.thrust),
                 zeros(&self.difference),
             ),
-            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and keeps the previous
-            // difference if it has decimal places.
+            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and
+            // keeps the previous difference if it has decimal places.
             Mode::Thruster => (
                 Format {
                     compass: true,
@@ -204,8 +204,8 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// 15 fields: real drivers reject any other number of fields. The two fuel gauges after the 15th
-    /// are ignored.
+    /// 15 fields: real drivers reject any other number of fields. The two fuel gauges after the
+    /// 15th are ignored.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Address("PSEAB"),
@@ -340,7 +340,8 @@ impl MissionSettings {
     }
 }
 
-/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimal places of minutes give a resolution of 0.1 m.
+/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimal places of minutes give a
+/// resolution of 0.1 m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waypoint {
     /// The waypoint's position.

@@ -11,7 +11,8 @@ impl Talker {
     /// A magnetic compass.
     pub const HC: Talker = Talker(*b"HC");
 
-    /// Talker and kind of a five-character address. A proprietary sentence begins with `P` and has no talker.
+    /// Talker and kind of a five-character address. A proprietary sentence begins with `P` and has
+    /// no talker.
     pub(super) fn split(address: &str) -> Option<(Talker, &str)> {
         let (talker, kind) = address.split_at_checked(2)?;
         let characters: [u8; 2] = talker.as_bytes().try_into().ok()?;

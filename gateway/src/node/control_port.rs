@@ -1,9 +1,9 @@
 //! The control port of a gateway: operators' requests over TCP, with or without a game. Stops also
 //! arrive as datagrams.
 //!
-//! Requests and replies are one line each, as on the network (`bus::token`). Anyone may query the status and stop the
-//! boat; everything else requires proof of the game's token. Nothing delays a stop: no silent peer, no garbage, no
-//! number of connections.
+//! Requests and replies are one line each, as on the network (`bus::token`). Anyone may query the
+//! status and stop the boat; everything else requires proof of the game's token. Nothing delays a
+//! stop: no silent peer, no garbage, no number of connections.
 
 use super::error::NodeError;
 use super::loop_input::{LoopInput, Stop};
@@ -145,8 +145,8 @@ impl Server {
                 };
             answer.push(b'\n');
             stream.write_all(&answer)?;
-            // A browser that a web page causes to post here speaks HTTP: its first line is garbage, and the rest is not
-            // read.
+            // A browser that a web page causes to post here speaks HTTP: its first line is garbage,
+            // and the rest is not read.
             if is_garbage {
                 return Ok(());
             }

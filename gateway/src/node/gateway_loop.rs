@@ -134,8 +134,8 @@ impl GatewayLoop<'_> {
                 .show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
-            // No longer than a heartbeat: the guard cannot distinguish a loop that is waiting for a boat from one that
-            // hangs.
+            // No longer than a heartbeat: the guard cannot distinguish a loop that is waiting for a
+            // boat from one that hangs.
             let call = self.input.calls.take(if self.guarded.is_some() {
                 wait.min(HEARTBEAT)
             } else {

@@ -211,7 +211,8 @@ fn connect(
         guard: Guard::new(settings.place.token.clone()),
         port: port.as_ref(),
     };
-    // On its own thread: a gateway that searched for its game first left a moving boat unattended in the meantime.
+    // On its own thread: a gateway that searched for its game first left a moving boat unattended
+    // in the meantime.
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {

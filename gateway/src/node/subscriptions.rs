@@ -33,7 +33,8 @@ pub(super) fn subscribe(
     let name = &scenario.vehicles[vehicle.index()].name;
     Ok(vec![
         // From the sim, not from agents: only the sim knows whose order counts (tickets), what the
-        // referee allows, and when an agent is lost. A second implementation of these rules would eventually diverge.
+        // referee allows, and when an agent is lost. A second implementation of these rules would
+        // eventually diverge.
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
             // The query is processed again, after those queued before it, to send the reply.

@@ -91,7 +91,8 @@ impl Server {
             return;
         };
         // The reading thread will notice; the stream may be closed already.
-        // The connection that has been idle longest is closed, so that many silent connections cannot lock anyone out.
+        // The connection that has been idle longest is closed, so that many silent connections
+        // cannot lock anyone out.
         let slot = self
             .connections
             .admit(from, move || drop(other.shutdown(Shutdown::Both)));

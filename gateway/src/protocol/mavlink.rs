@@ -36,8 +36,8 @@ const AGAIN_S: f64 = 0.5;
 const VELOCITY_MIN_M_S: f64 = 0.01;
 /// The messages that we need from the boat: number, and rate, 1/s.
 const STREAMS: [(u32, f64); 9] = [
-    // Five times a second instead of once: it shows the gateway that someone has taken over the boat, which travels two
-    // metres in a second.
+    // Five times a second instead of once: it shows the gateway that someone has taken over the
+    // boat, which travels two metres in a second.
     (HEARTBEAT_DATA::ID, 5.0),
     (GLOBAL_POSITION_INT_DATA::ID, 10.0),
     (ATTITUDE_DATA::ID, 10.0),
@@ -347,8 +347,8 @@ impl Codec for Mavlink {
                 out,
             );
         }
-        // Not before the boat is known: ArduPilot also answers a request sent to everyone, and so would every other
-        // system on the link.
+        // Not before the boat is known: ArduPilot also answers a request sent to everyone, and so
+        // would every other system on the link.
         if self.boat.system.is_some() && now >= self.streams_due {
             self.streams_due = now + SimTime::from_s(STREAMS_AGAIN_S);
             for (id, rate_hz) in STREAMS {

@@ -137,8 +137,8 @@ impl Boat {
         })
     }
 
-    /// Records other senders' set-points for the boat, and other ground stations, if the boat or a router passes them
-    /// on to us.
+    /// Records other senders' set-points for the boat, and other ground stations, if the boat or a
+    /// router passes them on to us.
     pub(super) fn report_stranger(&mut self, received: &Received, take: &mut dyn FnMut(Report)) {
         let Received {
             system,

@@ -40,8 +40,8 @@ use thiserror::Error;
 pub(crate) struct Conditions {
     /// Whether bytes can reach the boat.
     pub(crate) link: bool,
-    /// How long the gateway itself was not running until now, s, if its guard may have stopped the boat in the
-    /// meantime.
+    /// How long the gateway itself was not running until now, s, if its guard may have stopped the
+    /// boat in the meantime.
     pub(crate) hung_s: Option<f64>,
     /// Why the boat is not commanded by this gateway alone, if so.
     pub(crate) control: Option<ControlFault>,
@@ -301,8 +301,8 @@ impl Supervisor {
         if let Some(cause) = now.hindrance(task) {
             return State::Failsafe { cause, task: None };
         }
-        // The geofence takes precedence over the battery: a boat that leaves its water endangers others; one with an
-        // empty battery endangers only itself.
+        // The geofence takes precedence over the battery: a boat that leaves its water endangers
+        // others; one with an empty battery endangers only itself.
         let graver = now.causes().find(|other| other.gravity() > cause.gravity());
         graver.map_or(self.state, |graver| self.failsafe(now, graver))
     }
@@ -320,7 +320,8 @@ impl Supervisor {
         };
         match action {
             FailsafeAction::Standby => None,
-            // For four causes only. With an action for each, a user could let a boat keep station on a lost fix.
+            // For four causes only. With an action for each, a user could let a boat keep station
+            // on a lost fix.
             FailsafeAction::StationKeep => Some(Task::StationKeep),
             FailsafeAction::GoToErp => Some(Task::GoToErp),
         }

@@ -1,4 +1,5 @@
-//! The emulated boat on its own: what it ignores and what it sends. The rest is in `scenarios/emulator.txt`.
+//! The emulated boat on its own: what it ignores and what it sends. The rest is in
+//! `scenarios/emulator.txt`.
 
 use crate::boat::emulated;
 use crate::rig::datum;

@@ -319,8 +319,8 @@ fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     closer.join().unwrap();
 }
 
-/// A full listener, which does not answer the next connection, like a radio out of range. Also returns the connection
-/// that fills it.
+/// A full listener, which does not answer the next connection, like a radio out of range. Also
+/// returns the connection that fills it.
 fn full() -> (String, socket2::Socket, TcpStream) {
     let listener =
         socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();

@@ -11,7 +11,8 @@ use messages::Order;
 use messages::external::OperatorCommand;
 use primitives::frame::Ned;
 
-/// Time limit for two gateways to detect each other, s. Most of it is the time that the boat takes to move.
+/// Time limit for two gateways to detect each other, s. Most of it is the time that the boat takes
+/// to move.
 const LIMIT_S: f64 = 15.0;
 
 fn steer(heading_deg: f64) -> Order {

@@ -1,4 +1,5 @@
-//! An emulated ArduPilot boat and ground stations other than ours: every request is answered as Rover would.
+//! An emulated ArduPilot boat and ground stations other than ours: every request is answered as
+//! Rover would.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 

@@ -1,5 +1,5 @@
-//! An emulated ArduPilot boat in GUIDED: it follows what ground stations send as Rover does, or reports that it does
-//! not.
+//! An emulated ArduPilot boat in GUIDED: it follows what ground stations send as Rover does, or
+//! reports that it does not.
 
 #![expect(
     deprecated,

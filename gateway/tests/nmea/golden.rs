@@ -1,4 +1,5 @@
-//! Sentences and their meaning as listed in `golden.txt`, and other sentences that we write or reject.
+//! Sentences and their meaning as listed in `golden.txt`, and other sentences that we write or
+//! reject.
 
 use crate::bodies;
 use crate::sentences::values;

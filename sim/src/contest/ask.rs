@@ -5,7 +5,8 @@ use primitives::{Ned, VehicleId};
 use rules::{Asks, Field, Rules};
 
 /// The requests that a team's boats make from their picture, as with pRangeEvent in the Aquaticus
-/// missions. Any boat that believes it is in range makes a request, because a refusal costs nothing.
+/// missions. Any boat that believes it is in range makes a request, because a refusal costs
+/// nothing.
 pub(super) fn asks_of<'a>(
     rules: &Rules,
     field: &'a Field,

@@ -33,7 +33,8 @@ impl Contest {
         is_silent(&self.faults[vehicle.index()], self.now())
     }
 
-    /// Starts and ends the agent faults of this tick, with an event each. Boats whose agents die then hold.
+    /// Starts and ends the agent faults of this tick, with an event each. Boats whose agents die
+    /// then hold.
     pub(super) fn begin_and_end_faults(&mut self) {
         let now = self.now();
         let tick = self.scenario.tick;

@@ -453,8 +453,8 @@ impl Contest {
 
     /// Advances to the next decision or the end of the game.
     pub fn advance(&mut self) {
-        // Once per decision, before any tick: if orders expired within a decision, the game would depend on when this
-        // was checked.
+        // Once per decision, before any tick: if orders expired within a decision, the game would
+        // depend on when this was checked.
         self.expire_orders();
         self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {

@@ -138,7 +138,8 @@ impl Contest {
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
         }
-        // Only if present, so that the digests of games without radios did not change when radios were added.
+        // Only if present, so that the digests of games without radios did not change when radios
+        // were added.
         if self.radio.is_some()
             || self.sightings.is_some()
             || self.watchdogs.iter().any(Option::is_some)

@@ -58,8 +58,8 @@ impl Contest {
             self.scenario.tick * world.tick as i64,
             "time is the number of ticks"
         );
-        // The world quarantines boats with a non-finite state. If one gets past that, it is our bug, and the game's
-        // result would be worthless.
+        // The world quarantines boats with a non-finite state. If one gets past that, it is our
+        // bug, and the game's result would be worthless.
         assert!(
             world.boats.iter().all(|boat| boat.pose.at.is_finite()),
             "positions are finite"

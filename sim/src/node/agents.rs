@@ -15,8 +15,8 @@ pub struct Accepted {
     pub back: Vec<VehicleId>,
 }
 
-/// Handles an agent's orders while `tick` is open. Lockstep accepts orders for the open decision; real time also
-/// accepts those for an earlier one, if none newer has arrived.
+/// Handles an agent's orders while `tick` is open. Lockstep accepts orders for the open decision;
+/// real time also accepts those for an earlier one, if none newer has arrived.
 pub fn accept(
     agents: &mut Membership,
     message: &Orders,

@@ -32,7 +32,8 @@ pub fn accept(
         drop(own);
         gateways.note_taken(vehicle, seq);
         gateways.welcome_back(report.ticket);
-        // The age is by the gateway's own clock; the time of the fix would require synchronised clocks.
+        // The age is by the gateway's own clock; the time of the fix would require synchronised
+        // clocks.
         return Some(now - SimTime(report.age_ns).min(OLDEST));
     };
     refusals.count(refusal);

@@ -70,7 +70,8 @@ fn keep_speed(
     Ok(due.min(clock::now()))
 }
 
-/// Waits until all agents have replied to the open decision. Agents that exceed the scenario's patience are lost.
+/// Waits until all agents have replied to the open decision. Agents that exceed the scenario's
+/// patience are lost.
 fn gather(
     server: &mut GameServer<'_>,
     tell: &mut dyn FnMut(ProgressMessage),

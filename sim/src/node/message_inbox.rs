@@ -1,4 +1,5 @@
-//! Messages from other nodes to the game. Every sender has its own space, which no other sender can use up.
+//! Messages from other nodes to the game. Every sender has its own space, which no other sender can
+//! use up.
 
 use bus::{Query, Watched};
 use messages::external::{NavReport, Reported};
@@ -65,8 +66,8 @@ impl Sender {
     /// Maximum number of waiting messages: more than arrive between two reads by the sim.
     fn share(self) -> usize {
         match self {
-            // Space per topic or per link would need no tickets, but anyone can publish on any number of topics over
-            // any number of links.
+            // Space per topic or per link would need no tickets, but anyone can publish on any
+            // number of topics over any number of links.
             Sender::Member(_) => 128,
             // Includes every byte between a gateway and its boat.
             Sender::Reporting(_) => 2048,

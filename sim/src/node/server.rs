@@ -507,8 +507,8 @@ impl<'w> GameServer<'w> {
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
         let mut sent = start;
-        // Any message may get lost. An agent that misses this one reports a lost sim; an agent that leaves has received
-        // it. The wait is limited, because an agent may hang.
+        // Any message may get lost. An agent that misses this one reports a lost sim; an agent that
+        // leaves has received it. The wait is limited, because an agent may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
             if clock::since(sent) >= SEND_END_AGAIN {

@@ -1,4 +1,5 @@
-//! A sim's subscriptions and queries, with one inbox each for commands, observers' queries and all other messages.
+//! A sim's subscriptions and queries, with one inbox each for commands, observers' queries and all
+//! other messages.
 
 use super::control_inbox::ControlInbox;
 use super::message_inbox::{Incoming, MessageInbox};
@@ -107,7 +108,8 @@ pub(super) fn open(
     let others = || Arc::clone(&inboxes.others);
     let gone = others();
     let joins = others();
-    // If the inbox is full, this can be dropped: the sim is busy and checks the inbox before each message anyway.
+    // If the inbox is full, this can be dropped: the sim is busy and checks the inbox before each
+    // message anyway.
     let stops = Arc::clone(&inboxes.controls);
     let look = others();
     let stop = move |bytes: &[u8]| {
@@ -123,8 +125,8 @@ pub(super) fn open(
         }
     };
     let mut declarations = vec![
-        // One subscription for all agents: the key contains the agents' names for access control, and the ticket
-        // identifies the sender.
+        // One subscription for all agents: the key contains the agents' names for access control,
+        // and the ticket identifies the sender.
         bus.subscribe(
             topic::all_orders(game),
             inboxes.message_callback(|orders, _| Incoming::Orders(orders)),

@@ -1,14 +1,15 @@
 //! Sends fewer pictures over a link that cannot carry all of them.
 //!
 //! QUIC queues the datagrams that its congestion window does not admit, up to a mebibyte of them.
-//! Over a link that is slower than the sim, orders would reply to ever older pictures. As in LEDBAT (RFC 6817), the
-//! time in queues is the round-trip time beyond its recent minimum.
+//! Over a link that is slower than the sim, orders would reply to ever older pictures. As in LEDBAT
+//! (RFC 6817), the time in queues is the round-trip time beyond its recent minimum.
 
 use std::time::{Duration, Instant};
 
 /// The time in queues above which pictures are skipped.
 const QUEUED_MAX: Duration = Duration::from_millis(300);
-/// Maximum number of pictures skipped in a row: an order lives for a second, and the next picture may be lost.
+/// Maximum number of pictures skipped in a row: an order lives for a second, and the next picture
+/// may be lost.
 const SKIPPED_MAX: u32 = 2;
 /// The minimum covers one to two windows.
 const WINDOW: Duration = Duration::from_secs(10);
@@ -60,8 +61,8 @@ mod tests {
 
     const PERIOD: Duration = Duration::from_millis(100);
 
-    /// The fraction of 600 pictures sent over a link with this delay each way that carries one picture per `spacing`,
-    /// and the last round trip.
+    /// The fraction of 600 pictures sent over a link with this delay each way that carries one
+    /// picture per `spacing`, and the last round trip.
     fn play(delay: Duration, spacing: Duration) -> (f64, Duration) {
         let start = bus::clock::now();
         let mut throttle = Throttle::new(start);

@@ -27,7 +27,8 @@ impl WorkingTime {
         }
     }
 
-    /// Accounts for the time since the last call: the sim's own cycle, after a wait of up to `waited`.
+    /// Accounts for the time since the last call: the sim's own cycle, after a wait of up to
+    /// `waited`.
     pub(super) fn pass(&mut self, now: Instant, waited: Duration) {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;

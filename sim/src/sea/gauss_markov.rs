@@ -83,8 +83,8 @@ impl Trail {
 }
 
 impl GaussMarkov {
-    /// The process `name` of this game. `place` is the farthest grid position read at a given time: a seed that ends
-    /// then applies up to there.
+    /// The process `name` of this game. `place` is the farthest grid position read at a given time:
+    /// a seed that ends then applies up to there.
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;

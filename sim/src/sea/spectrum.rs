@@ -67,12 +67,13 @@ pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
 
 /// The components that represent this sea, by ascending frequency.
 ///
-/// The band is divided into one stratum per component, with equal fractions of the variance and its second moment (that
-/// of the velocities) combined. A component carries the variance of its stratum. Its frequency is drawn from the
-/// spectrum within the stratum: every moment is right on average, and the frequencies have no common multiple after
-/// which the sea would repeat itself. Each has one direction, so that the sea is the same process everywhere (Jefferys
-/// 1987). Directions are quantiles of the spreading at multiples of the golden ratio: few neighbouring frequencies
-/// cover all directions, and neither side is favoured.
+/// The band is divided into one stratum per component, with equal fractions of the variance and its
+/// second moment (that of the velocities) combined. A component carries the variance of its
+/// stratum. Its frequency is drawn from the spectrum within the stratum: every moment is right on
+/// average, and the frequencies have no common multiple after which the sea would repeat itself.
+/// Each has one direction, so that the sea is the same process everywhere (Jefferys 1987).
+/// Directions are quantiles of the spreading at multiples of the golden ratio: few neighbouring
+/// frequencies cover all directions, and neither side is favoured.
 pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let mut stream = Stream::new(seed, "waves");
     let count = waves.components as usize;

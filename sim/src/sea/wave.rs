@@ -100,8 +100,8 @@ impl PlaneWave {
     }
 
     /// The square root of the part of a hull's drift force that depends on neither its size nor the
-    /// wave's direction: a R, from 1/2 ρ g a² R², where a hull of draught T reflects the fraction R = 1 − e^(−2kT) of
-    /// the wave. Finite depth as in Longuet-Higgins (1977).
+    /// wave's direction: a R, from 1/2 ρ g a² R², where a hull of draught T reflects the fraction R
+    /// = 1 − e^(−2kT) of the wave. Finite depth as in Longuet-Higgins (1977).
     pub(super) fn reflected_m(&self, draught_m: f64) -> f64 {
         let reflected = 1.0 - libm::exp(-2.0 * self.wavenumber_rad_m * draught_m);
         self.component.amplitude_m * reflected * self.group_factor().sqrt()

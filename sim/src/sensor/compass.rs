@@ -86,8 +86,8 @@ impl CompassModel {
             if let Some(off_rad) = self.fault_rad(now) {
                 state.psi_rad = wrap_pi(state.psi_rad + off_rad);
             }
-            // Like a real one, the front seat steers by its compass, so a deviation leads the boat astray instead of
-            // merely being reported.
+            // Like a real one, the front seat steers by its compass, so a deviation leads the boat
+            // astray instead of merely being reported.
             state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }
         state.psi_rad

@@ -1,5 +1,5 @@
-//! How sensibly boats play: order chatter, idle time, time near the edges, contacts, circling, and whether any boat
-//! attacks.
+//! How sensibly boats play: order chatter, idle time, time near the edges, contacts, circling, and
+//! whether any boat attacks.
 //!
 //! [`GameQuality`] processes a game step by step, recorded or running, and produces a [`Quality`];
 //! results of several games can be added. They are split by strategy, role and mode, because those

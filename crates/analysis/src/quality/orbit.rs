@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 pub const ORBIT_MIN_S: f64 = 60.0;
 /// Time between examined positions, s.
 const SPACING_S: f64 = 1.0;
-/// Tolerance of positions from the circle, m, or as a fraction of its radius, whichever is larger. Waves and gusts move
-/// a boat by that much.
+/// Tolerance of positions from the circle, m, or as a fraction of its radius, whichever is larger.
+/// Waves and gusts move a boat by that much.
 const OFF_M: f64 = 1.0;
 const OFF_SHARE: f64 = 0.15;
 /// A boat that stays within this radius is at rest, m.

@@ -1,4 +1,5 @@
-//! A scenario knows whether its seed matters: games with two seeds differ if, and only if, it says so.
+//! A scenario knows whether its seed matters: games with two seeds differ if, and only if, it says
+//! so.
 
 use crate::files::{played, shipped};
 use primitives::reseed::Reseed;

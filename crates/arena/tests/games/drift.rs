@@ -1,4 +1,5 @@
-//! Boats in current and wind: the drift that their helms estimate, and where they end up in spite of it.
+//! Boats in current and wind: the drift that their helms estimate, and where they end up in spite
+//! of it.
 
 use crate::files::{loaded, watch};
 use primitives::{Ned, VehicleId};
@@ -43,9 +44,9 @@ fn blue_at(contest: &Contest) -> Ned {
     contest.world().state().boats[0].pose.at
 }
 
-/// A boat's path to a point 200 m east across a current of half a metre per second towards the north.
-/// Returns its distances from the straight line by the remaining distance along it, m, and the
-/// duration, s.
+/// A boat's path to a point 200 m east across a current of half a metre per second towards the
+/// north. Returns its distances from the straight line by the remaining distance along it, m, and
+/// the duration, s.
 fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
     let strategy = format!(
         "base = \"SCENARIOS/strategies/safety.toml\"\nabout = \"crosses\"\nhelm = {{ hysteresis = 0, compensate_drift = {compensate_drift} }}\n\
@@ -70,7 +71,8 @@ fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
 #[test]
 fn a_boat_that_only_points_at_its_goal_drifts_along_the_curve_of_pursuit() {
     // With k the ratio of current to speed through the water, and the goal at the distance a across
-    // the current: y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), as for a boat rowed to the other bank (Boole 1859, ch. XI).
+    // the current: y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), as for a boat rowed to the other bank
+    // (Boole 1859, ch. XI).
     let k = 0.5 / SPEED_M_S;
     let curve_m = |to_go_m: f64| {
         let share = (to_go_m / 200.0).clamp(0.0, 1.0);

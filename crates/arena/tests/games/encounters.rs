@@ -1,4 +1,5 @@
-//! Boats on crossing paths: they keep clear of each other, and do not both turn into each other's way.
+//! Boats on crossing paths: they keep clear of each other, and do not both turn into each other's
+//! way.
 
 use crate::files::{loaded, watch};
 use analysis::HullRectangle;

@@ -157,8 +157,8 @@ fn twenty_boats_a_side_grab_and_capture() {
 
 #[test]
 fn a_tagged_boat_does_not_lie_at_an_edge() {
-    // A boat once took 258 s to get home in this game. For most of that time it lay 10 m from an edge with no boat
-    // near, because the helm's steadiness bonus outweighed the way home.
+    // A boat once took 258 s to get home in this game. For most of that time it lay 10 m from an
+    // edge with no boat near, because the helm's steadiness bonus outweighed the way home.
     const HOME_S: f64 = 150.0;
     let game =
         scenario::load(&shipped("games/strategy_4_vs_3.toml")).and_then(|game| game.of_seed(1));

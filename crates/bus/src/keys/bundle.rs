@@ -75,8 +75,8 @@ impl Bundle {
         let identity = name
             .parse()
             .map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
-        // To its owner, an expired certificate looks like a network failure, since the other side closes the link
-        // silently.
+        // To its owner, an expired certificate looks like a network failure, since the other side
+        // closes the link silently.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
         let validity = certificate.validity();
         let hosts = hosts(&certificate);

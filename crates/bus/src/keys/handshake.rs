@@ -19,8 +19,8 @@ const STEP: Duration = Duration::from_millis(500);
 /// The record type of a TLS alert, with which a TLS server answers other protocols.
 const ALERT: u8 = 0x15;
 
-/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None` if nothing is
-/// listening there or nothing is wrong.
+/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None`
+/// if nothing is listening there or nothing is wrong.
 pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
     let address = address(endpoint);

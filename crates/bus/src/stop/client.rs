@@ -414,7 +414,8 @@ impl Shared {
             for (vehicle, (state, age_ms)) in states {
                 orders.expect(vehicle);
                 if !state.is_empty() {
-                    // If the request arrived instantly, the sim had received the state this long before.
+                    // If the request arrived instantly, the sim had received the state this long
+                    // before.
                     let as_of = asked
                         .checked_sub(Duration::from_millis(*age_ms))
                         .unwrap_or(asked);

@@ -13,8 +13,9 @@ use std::time::{Duration, Instant};
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// The interval of later repeats.
 const AGAIN: Duration = Duration::from_millis(200);
-/// A published status may be older than the stop. For this long, the stop is repeated even if a status shows it, and a
-/// status is ignored unless the boat was known to be in a different state before.
+/// A published status may be older than the stop. For this long, the stop is repeated even if a
+/// status shows it, and a status is ignored unless the boat was known to be in a different state
+/// before.
 const DOUBTED: Duration = Duration::from_secs(1);
 /// How far a gateway's clock may fall behind from one status to the next.
 const DRIFT: Duration = Duration::from_micros(100);

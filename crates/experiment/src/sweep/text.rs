@@ -93,7 +93,8 @@ fn table(effect: &Effect, line: &mut impl FnMut(String)) {
     }
 }
 
-/// Differences from the first entry in the fraction of games won, at the points where they are significant.
+/// Differences from the first entry in the fraction of games won, at the points where they are
+/// significant.
 fn differences(report: &Report, line: &mut impl FnMut(String)) {
     let Some(index) = Metric::place("win_share") else {
         return;

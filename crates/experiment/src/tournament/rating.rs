@@ -46,8 +46,8 @@ const CLOSE: f64 = 1e-10;
 /// itself are ignored.
 ///
 /// The interval is the wider of two: from the curvature of the likelihood, as if all games were
-/// independent, and clustered by seed (Liang and Zeger, Biometrika 1986), since all games with the same seed have the
-/// same sea.
+/// independent, and clustered by seed (Liang and Zeger, Biometrika 1986), since all games with the
+/// same seed have the same sea.
 ///
 /// # Panics
 /// If a game has an unknown entry.

@@ -63,8 +63,8 @@ pub struct Report {
 
 /// The results of an entry; means are per game.
 ///
-/// All games with the same seed have the same sea, so they are one observation: the entry's mean over its
-/// opponents and both sides. The intervals are over seeds.
+/// All games with the same seed have the same sea, so they are one observation: the entry's mean
+/// over its opponents and both sides. The intervals are over seeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The entry's name.

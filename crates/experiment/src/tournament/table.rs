@@ -23,7 +23,8 @@ const COLUMNS: [Column; 7] = [
 /// The default width of tables without a terminal, characters.
 pub const WIDTH: usize = 120;
 
-/// The report as text, in tables of at most `columns` characters if names allow it; each command stays on one line.
+/// The report as text, in tables of at most `columns` characters if names allow it; each command
+/// stays on one line.
 pub fn text(report: &Report, columns: usize) -> String {
     let mut text = String::new();
     let sea = report

@@ -64,7 +64,8 @@ fn mutations(seeds: Vec<Vec<u8>>) -> Change {
     })
 }
 
-/// The result of `read` for bytes in pieces of any size, which must be the same as for all bytes at once.
+/// The result of `read` for bytes in pieces of any size, which must be the same as for all bytes at
+/// once.
 fn in_pieces<T: PartialEq + Debug>(bytes: &[u8], read: impl Fn(usize) -> T) -> T {
     let whole = read(usize::MAX);
     let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;

@@ -1,5 +1,5 @@
-//! Packets of MOOS clients and datagrams of pShare: a stream may be split anywhere, what was read can be written and
-//! read again, and a database survives it.
+//! Packets of MOOS clients and datagrams of pShare: a stream may be split anywhere, what was read
+//! can be written and read again, and a database survives it.
 
 use super::{Target, in_pieces, mutations};
 use moos::database::Database;

@@ -221,8 +221,9 @@ impl Game {
         for (i, reward) in self.rewards.iter_mut().enumerate() {
             // A potential of the state alone, 0 at the end: it does not change the best policy (Ng,
             // Harada and Russell, ICML 1999). Places pay the undiscounted gain of a step. A payment
-            // per second failed: half a second on the right course changed the sum by only one per cent, and boats
-            // trained to retreat on 300,000 such samples ended up no closer to home than stationary ones.
+            // per second failed: half a second on the right course changed the sum by only one per
+            // cent, and boats trained to retreat on 300,000 such samples ended up no closer to home
+            // than stationary ones.
             let after = if ending == Ending::Over {
                 0.0
             } else {

@@ -277,8 +277,8 @@ impl Games {
         slot.begin(&self.setup, &self.starts).map(drop)
     }
 
-    /// Plays one step of every game with one action per row. A game that ends `restarts` in the same
-    /// step; otherwise in the next one, whose action and reward do not count.
+    /// Plays one step of every game with one action per row. A game that ends `restarts` in the
+    /// same step; otherwise in the next one, whose action and reward do not count.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a new game cannot begin.

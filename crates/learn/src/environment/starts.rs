@@ -36,8 +36,9 @@ impl Starts {
     /// The game with this seed. `number` decides whether it is watched.
     pub(super) fn game(&self, setup: &Setup, number: u64, seed: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
-        // Repeating starts must outnumber the parallel games: with 64 of each, every game always had the same start,
-        // and the policy learned nothing. A repeated start takes 0.03 ms; a new one with a sea takes 0.41 ms.
+        // Repeating starts must outnumber the parallel games: with 64 of each, every game always
+        // had the same start, and the policy learned nothing. A repeated start takes 0.03 ms; a new
+        // one with a sea takes 0.41 ms.
         let index = seed
             .wrapping_sub(self.seed)
             .checked_rem(self.made.len() as u64);

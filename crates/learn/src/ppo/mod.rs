@@ -76,8 +76,8 @@ pub struct Batch {
     pub returns: Vec<f32>,
     /// The learning objective.
     pub lesson: Lesson,
-    /// Whether the boat followed the action. Only the critic learns from other samples: it must know the value of being
-    /// tagged.
+    /// Whether the boat followed the action. Only the critic learns from other samples: it must
+    /// know the value of being tagged.
     pub counts: Vec<bool>,
 }
 
@@ -252,9 +252,10 @@ impl ActorCritic {
             .zip(by_logits.chunks_exact_mut(actions));
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
-            // A tagged boat's actions have no effect; policies that learned from them left the field. The critic does
-            // learn from these samples: before it did, it misjudged being tagged, and policies that won 16 of 20 games
-            // against Pav01 won none after another half a million samples.
+            // A tagged boat's actions have no effect; policies that learned from them left the
+            // field. The critic does learn from these samples: before it did, it misjudged being
+            // tagged, and policies that won 16 of 20 games against Pav01 won none after another
+            // half a million samples.
             if !batch.counts[i] {
                 continue;
             }
@@ -278,7 +279,8 @@ impl ActorCritic {
         self.critic
             .forward(&rows(&batch.states, self.critic.sizes()[0]), &mut trace);
         let deviation = self.scale.deviation();
-        // In standard deviations of returns, so that Adam learns rewards of any scale at the same rate.
+        // In standard deviations of returns, so that Adam learns rewards of any scale at the same
+        // rate.
         let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
         let mut by_values: Vec<f32> = shard.iter().zip(trace.output()).map(off).collect();
         sums.value = by_values.iter().map(|off| 0.5 * off * off).sum();
@@ -347,7 +349,8 @@ impl Normal {
     }
 }
 
-/// The fraction of the returns' variance that the critic explained; `None` if the returns are equal.
+/// The fraction of the returns' variance that the critic explained; `None` if the returns are
+/// equal.
 fn explained_variance(advantages: &[f32], returns: &[f32]) -> Option<f32> {
     // An advantage is a return minus the critic's value.
     let [rest, all] = [advantages, returns].map(|list| Normal::of(list.iter().copied()).deviation);

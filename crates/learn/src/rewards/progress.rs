@@ -38,18 +38,20 @@ pub struct BoatProgress {
 /// A boat's position among the others, each value from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Among {
-    /// Proximity to the nearest intruder, an untagged enemy on the boat's side: 1 at its position, 0 at a field width
-    /// or more, or without an intruder.
+    /// Proximity to the nearest intruder, an untagged enemy on the boat's side: 1 at its position,
+    /// 0 at a field width or more, or without an intruder.
     pub at_intruder: f64,
     /// Proximity to the place that guards its own flag; see [`Place::guard`](super::Place::guard).
     pub on_guard: f64,
     /// Proximity to the place that shields a mate; see [`Place::shield`](super::Place::shield).
     pub at_shield: f64,
-    /// Distance from the nearest untagged enemy: 0 at its position, 1 at a quarter of the field's width and beyond.
+    /// Distance from the nearest untagged enemy: 0 at its position, 1 at a quarter of the field's
+    /// width and beyond.
     pub clear: f64,
 }
 
-/// Each boat's progress according to its own sensors and, with `among_others`, its position among the others.
+/// Each boat's progress according to its own sensors and, with `among_others`, its position among
+/// the others.
 pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team: TeamId| Placed {
@@ -111,8 +113,8 @@ struct Posts {
     /// By team, the place that guards its flag; of several flags, the one nearest to an untagged
     /// enemy. None without untagged enemies.
     flag: [Option<Ned>; 2],
-    /// Untagged boats on the enemies' side: index, distance to the nearest untagged enemy in metres, and the place that
-    /// shields the boat from that enemy.
+    /// Untagged boats on the enemies' side: index, distance to the nearest untagged enemy in
+    /// metres, and the place that shields the boat from that enemy.
     mates: Vec<(usize, f64, Ned)>,
 }
 
@@ -263,7 +265,8 @@ mod tests {
 
     #[test]
     fn the_nearest_untagged_enemy_on_a_teams_own_side_is_an_intruder() {
-        // One of the two enemies on the first team's side is tagged. The other is 32 m and 40 m from the boats.
+        // One of the two enemies on the first team's side is tagged. The other is 32 m and 40 m
+        // from the boats.
         let boats = seen([
             (70.0, 72.0, false),
             (30.0, 40.0, false),

@@ -85,8 +85,8 @@ impl Learner {
     }
 }
 
-/// Converts a policy's output to an action without exploration: the most likely or most valuable discrete action, or
-/// the continuous one.
+/// Converts a policy's output to an action without exploration: the most likely or most valuable
+/// discrete action, or the continuous one.
 pub(super) fn greedy(is_discrete: bool, output: &[f32]) -> Action {
     if is_discrete {
         Action::likeliest(output)

@@ -402,7 +402,8 @@ impl Trainer {
             played,
         };
         let won = evaluated.won();
-        // By evaluation games with the same seeds each time, since returns from self-play are not informative.
+        // By evaluation games with the same seeds each time, since returns from self-play are not
+        // informative.
         let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
         if is_best {
             self.state.best = Some(Best {

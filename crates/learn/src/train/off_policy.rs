@@ -40,8 +40,8 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
-            // Entries of the 2023 games used TD3 and double DQN; with these two, their paper's results can be
-            // reproduced.
+            // Entries of the 2023 games used TD3 and double DQN; with these two, their paper's
+            // results can be reproduced.
             if is_new && known < settings.warm_up {
                 return counts.iter().map(|_| td3::drawn(stream)).collect();
             }

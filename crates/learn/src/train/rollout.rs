@@ -91,7 +91,8 @@ impl Rollout {
         Ok(rollout)
     }
 
-    /// Records the teacher's actions in the last step. Steps without a corresponding action are not learned.
+    /// Records the teacher's actions in the last step. Steps without a corresponding action are not
+    /// learned.
     fn take_taught(&mut self, environment: &VectorEnvironment) {
         let (rows, per_game) = environment.rows();
         let first = self.counts.len() - rows;

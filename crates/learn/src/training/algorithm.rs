@@ -125,8 +125,8 @@ pub struct Td3 {
     /// Factor on rewards; values should be about 1 to 10.
     #[schemars(range(min = 0.000_001, max = 1_000_000), extend("default" = 1))]
     pub reward_scale: f32,
-    /// Fraction of the learned weights that target networks adopt per step of the policy's optimiser (Polyak
-    /// averaging).
+    /// Fraction of the learned weights that target networks adopt per step of the policy's
+    /// optimiser (Polyak averaging).
     #[schemars(range(min = 0, max = 1), extend("default" = 0.005))]
     pub target_rate: f32,
     /// Standard deviation of exploration noise on actions.

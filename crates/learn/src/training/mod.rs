@@ -67,7 +67,8 @@ impl ScenarioFile for Training {
     }
 }
 
-/// Input of the critic, which estimates the value of the rest of a game. It is used only in training.
+/// Input of the critic, which estimates the value of the rest of a game. It is used only in
+/// training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriticInput {
@@ -115,8 +116,8 @@ pub struct Evaluation {
     /// Games per opponent, half of them on each side, always with the same seeds.
     #[schemars(range(min = 2, max = 100_000), extend("default" = 20))]
     pub games: u32,
-    /// Strategy files of the opponents, in the game of the last stage. The best policy wins the most games in total;
-    /// draws count half.
+    /// Strategy files of the opponents, in the game of the last stage. The best policy wins the
+    /// most games in total; draws count half.
     #[schemars(with = "Vec<FilePath>", length(min = 1, max = 100))]
     pub opponents: Vec<PathBuf>,
 }

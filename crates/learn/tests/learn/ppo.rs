@@ -106,7 +106,8 @@ fn adam_goes_as_its_authors_say() {
         "got {parameters:?}, want {want}"
     );
     assert!((parameters[1] + 0.8).abs() < 1e-6, "{parameters:?}");
-    // A gradient that is too long is scaled to the limit. In the first step, this changes only the reported norm.
+    // A gradient that is too long is scaled to the limit. In the first step, this changes only the
+    // reported norm.
     let mut adam = Adam::new(1, AdamSettings::default());
     let mut parameters = [0.0_f32];
     assert!(

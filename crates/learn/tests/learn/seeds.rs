@@ -1,4 +1,5 @@
-//! Restarted environments: games with given seeds, one boat of a team, and a setup as users write it.
+//! Restarted environments: games with given seeds, one boat of a team, and a setup as users write
+//! it.
 
 use super::fixture::{checked, file, raw, written};
 use agent::Action;

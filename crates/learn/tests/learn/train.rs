@@ -112,7 +112,8 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
             "{name}: 3 threads gave other results"
         );
 
-        // Resumed whenever games restart, and at every fifth update, where games and past policies continue.
+        // Resumed whenever games restart, and at every fifth update, where games and past policies
+        // continue.
         let mut trainer = trainer(training.clone(), 2);
         let mut taken_up = [0; 2];
         for update in 0.. {

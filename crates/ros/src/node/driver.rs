@@ -13,8 +13,8 @@ use primitives::VehicleId;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A request lasts no longer than this, whatever the game time: a paused game must not resume with the request of a
-/// program that has ended.
+/// A request lasts no longer than this, whatever the game time: a paused game must not resume with
+/// the request of a program that has ended.
 const WALL_MAX: Duration = Duration::from_secs(5);
 
 /// The newest request for a boat.

@@ -1,4 +1,5 @@
-//! The bridge on both networks: finds a game, publishes it to ROS 2, and drives boats as ROS 2 requests.
+//! The bridge on both networks: finds a game, publishes it to ROS 2, and drives boats as ROS 2
+//! requests.
 //!
 //! Observing and driving have separate sessions with the sim, and ROS 2 has a third. Only the
 //! newest frame and picture are kept: a slow ROS network loses messages and delays nothing.
@@ -33,7 +34,8 @@ use thiserror::Error;
 
 /// How often a bridge without news checks whether the game continues.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long the sim may be missing before the game is considered over. A paused game sends no frames.
+/// How long the sim may be missing before the game is considered over. A paused game sends no
+/// frames.
 const MISSING_MAX: Duration = Duration::from_secs(5);
 /// How long an agent without pictures waits for the sim.
 const SILENCE: Duration = Duration::from_secs(60);
@@ -356,7 +358,8 @@ impl Bridge {
         if let Some(reason) = self.shared.agent_news.visit(Option::take) {
             tell(News::Looking { reason: &reason });
         }
-        // Reported at each power of ten, not for each message: a hostile node could fill the terminal.
+        // Reported at each power of ten, not for each message: a hostile node could fill the
+        // terminal.
         if refused.total() > self.told.total().saturating_mul(10) {
             self.told = refused;
             tell(News::Refused { refused });

@@ -272,8 +272,8 @@ fn assert_lawful(
         } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
-            // Under sequential rules a boat may be tagged after its grab, and a flag grabbed just after the boundary
-            // has sent it home.
+            // Under sequential rules a boat may be tagged after its grab, and a flag grabbed just
+            // after the boundary has sent it home.
             assert!(
                 !before.vehicles[vehicle.index()].tagged
                     && !boat.disabled

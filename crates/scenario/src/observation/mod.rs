@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ObservationSpace {
-    /// Those of Pyquaticus, in its order: 21 of the boat itself and 8 of each other boat, each from -1
-    /// to 1.
+    /// Those of Pyquaticus, in its order: 21 of the boat itself and 8 of each other boat, each from
+    /// -1 to 1.
     Pyquaticus,
     /// Those of Pyquaticus from November 2023 to January 2024: `pyquaticus` without the scores, and
     /// distances relative to the field's diagonal plus 10 m, but that of the scrimmage line to half

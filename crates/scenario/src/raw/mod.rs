@@ -25,7 +25,8 @@ use super::diagnostics::NAME_PATTERN;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The path of another file, relative to the file that contains it. Empty where it was wrong or missing.
+/// The path of another file, relative to the file that contains it. Empty where it was wrong or
+/// missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("minLength" = 1, "x-expected" = "the path of a file"))]
 pub struct FilePath(pub(crate) String);

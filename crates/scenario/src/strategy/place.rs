@@ -33,7 +33,8 @@ pub enum Mark {
     EnemyFlag,
     /// Where a flag must be brought.
     CapturePlace,
-    /// Where a tagged boat is untagged; the enemy's flag while the boat must first leave that place.
+    /// Where a tagged boat is untagged; the enemy's flag while the boat must first leave that
+    /// place.
     UntagPlace,
 }
 
@@ -51,7 +52,8 @@ pub enum Boat {
     /// Enemy, tagged or not, nearest to the enemy's flag.
     NearestDefender,
     /// Untagged enemy on the team's side assigned to this boat. Starting with the enemy nearest to
-    /// one of the team's flags, each goes to the boat of the team that meets it soonest, one boat per enemy.
+    /// one of the team's flags, each goes to the boat of the team that meets it soonest, one boat
+    /// per enemy.
     AssignedIntruder,
     /// Enemy that carries one of the team's flags.
     FlagCarrier,

@@ -18,8 +18,8 @@ pub struct Policy {
     #[serde(default)]
     #[schemars(with = "Option<String>", extend("x-expected" = "the name of a variable with texts"))]
     pub sets: Option<u16>,
-    /// Whether each action is sampled from the model's probabilities, using the game's seed, instead of taking the most
-    /// likely one. Only for a model with logits.
+    /// Whether each action is sampled from the model's probabilities, using the game's seed,
+    /// instead of taking the most likely one. Only for a model with logits.
     #[serde(default)]
     pub sampled: bool,
     /// Whether the model's actions are the boat's orders, as in Pyquaticus. Modes, rules and other

@@ -1,4 +1,5 @@
-//! The background of the chart beneath the field: an image of the site, or its shoreline as GeoJSON.
+//! The background of the chart beneath the field: an image of the site, or its shoreline as
+//! GeoJSON.
 //!
 //! Both use WGS 84: GeoJSON has no other reference system since RFC 7946, and an image has a world
 //! file. The page places them relative to the field's datum.

@@ -200,7 +200,8 @@ fn listener(
     if token.as_ref().is_some_and(String::is_empty) {
         return Err(PageError::EmptyToken);
     }
-    // Watching is free, acting is not. TLS is left to a proxy: no one maintains certificates for a laptop on a dock.
+    // Watching is free, acting is not. TLS is left to a proxy: no one maintains certificates for a
+    // laptop on a dock.
     if !listen.ip().is_loopback() && token.is_none() {
         return Err(PageError::Open(*listen));
     }

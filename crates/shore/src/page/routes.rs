@@ -109,9 +109,9 @@ pub(super) async fn serve(
         report,
         background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
-        // Operators have separate slots: an E-stop must not queue behind observers. With too many pages, none is
-        // refused. The longest-idle page is displaced and reconnects after half a minute, so that one page too many
-        // does not make all of them reconnect.
+        // Operators have separate slots: an E-stop must not queue behind observers. With too many
+        // pages, none is refused. The longest-idle page is displaced and reconnects after half a
+        // minute, so that one page too many does not make all of them reconnect.
         operators: Connections::new(OPERATORS_MAX),
     };
     let site = Router::new()

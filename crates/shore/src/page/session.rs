@@ -97,7 +97,8 @@ impl PageSession {
         outgoing
     }
 
-    /// The page's free capacity. Limits the frames and text in flight, so that they do not arrive late.
+    /// The page's free capacity. Limits the frames and text in flight, so that they do not arrive
+    /// late.
     fn budget(&self) -> Budget {
         let (made, back) = self.pings;
         match self.undrawn < UNDRAWN_MAX {

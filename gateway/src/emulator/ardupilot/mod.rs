@@ -75,8 +75,8 @@ impl ArduPilot {
             frame: LocalFrame::new(datum),
             framer: Framer::new(),
             writer: Writer::new(SYSTEM, AUTOPILOT),
-            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started belongs to the gateway, and
-            // stays at rest.
+            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started belongs to
+            // the gateway, and stays at rest.
             mode: RoverMode::Hold,
             is_armed: false,
             set_points: SetPoints::default(),

@@ -43,7 +43,8 @@ impl GameServer<'_> {
         next.into_iter().for_each(|incoming| self.take_in(incoming));
     }
 
-    /// Answers some of the waiting questions. Answering takes time, and the sender can wait or ask again.
+    /// Answers some of the waiting questions. Answering takes time, and the sender can wait or ask
+    /// again.
     fn answer(&mut self) {
         let questions: Vec<(Question, Query)> = std::iter::from_fn(|| self.questions.take_now())
             .take(ANSWERS_MAX)

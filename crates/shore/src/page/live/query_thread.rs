@@ -96,7 +96,8 @@ impl QuerySchedule {
     }
 
     /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
-    /// process may run all minds, so after a long reply none is queried for a while. A paused game waits for no mind.
+    /// process may run all minds, so after a long reply none is queried for a while. A paused game
+    /// waits for no mind.
     fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(turn.vehicle, (start, turn.functions));
         let share = if turn.is_listed { LIST_SHARE } else { SHARE };
