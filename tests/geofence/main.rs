@@ -1,5 +1,5 @@
-//! The Surveyor of the boat files approaches its geofence at every speed, in every shipped sea. The watch stops it in
-//! time for it to come to rest inside.
+//! The Surveyor of the boat files approaches its geofence at every speed, in every shipped sea. The
+//! watch stops it in time for it to come to rest inside.
 //!
 //! `SQUALL_APPROACHES=10000 cargo test --locked --release --workspace --test geofence --
 //! --nocapture` runs more.
@@ -24,16 +24,21 @@ use trial::{Command, Sample, Start, TrialBoat, open_field};
 
 /// The simulated water's tick; the gateway runs in every second one.
 const TICK: SimTime = SimTime(50_000_000);
-/// The age of a fix when the gateway receives it, and the time that a command is in transit, in ticks: 0.2 s and 0.1 s.
+/// The age of a fix when the gateway receives it, and the time that a command is in transit, in
+/// ticks: 0.2 s and 0.1 s.
 const FIX_TICKS: usize = 4;
 const COMMAND_TICKS: u32 = 2;
 /// The edge of the geofence lies this far north of the middle of the field, m.
 const EDGE_M: f64 = 500.0;
-/// A stopped boat is observed for this long, s: on water at rest, until it lies still; elsewhere it continues to drift.
+/// A stopped boat is observed for this long, s: on water at rest, until it lies still; elsewhere it
+/// continues to drift.
 const STILL_S: f64 = 60.0;
 const DRIFTING_S: f64 = 20.0;
 /// An approach that has not reached the edge by this time ends, s.
 const LONGEST_S: f64 = 150.0;
+
+/// A boat that is farther from the edge than this may manoeuvre as it likes, m.
+const ROOM_M: f64 = 30.0;
 
 /// An approach: how fast, on which heading, from how far.
 struct Approach {
@@ -46,11 +51,12 @@ struct Approach {
     seed: u64,
 }
 
-/// How an approach ended: by how much the boat crossed, m (negative inside), and how far it came to
-/// rest from where it was stopped.
+/// How an approach ended: by how much the boat crossed, m (negative inside), how far it came to
+/// rest from where it was stopped, and how far from the edge that was.
 struct Ended {
     crossed_m: f64,
     went_m: f64,
+    room_m: f64,
 }
 
 fn nav(sample: &Sample) -> Nav {
@@ -64,11 +70,52 @@ fn nav(sample: &Sample) -> Nav {
     }
 }
 
+/// Heads for the edge, with a turn to either side every 8 s.
 fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
     let &Approach {
         speed_m_s,
         heading_rad,
         turn_rad,
+        ..
+    } = approach;
+    sail(approach, boat, sea, |now, _| {
+        let side = if ((now.as_s() / 8.0) as u32).is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
+        Order::Steer {
+            heading_rad: heading_rad + side * turn_rad,
+            speed_m_s,
+        }
+    })
+}
+
+/// Plays well inside: heads for another point every few seconds, at changing speeds, and now and
+/// then astern.
+fn play(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
+    sail(approach, boat, sea, |now, at| {
+        let mut stream = Stream::new(approach.seed + (now.as_s() / 7.0) as u64, "test/play");
+        let goal = Ned {
+            north: EDGE_M - stream.between(40.0, 90.0),
+            east: stream.between(-40.0, 40.0),
+        };
+        Order::Steer {
+            heading_rad: at.bearing_rad(goal),
+            speed_m_s: stream.between(-0.5, 2.0),
+        }
+    })
+}
+
+fn sail(
+    approach: &Approach,
+    boat: &Boat,
+    sea: &Sea,
+    ordered: impl Fn(SimTime, Ned) -> Order,
+) -> Option<Ended> {
+    let &Approach {
+        speed_m_s,
+        heading_rad,
         from_m,
         seed,
         ..
@@ -115,6 +162,7 @@ fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
                 return Some(Ended {
                     crossed_m: farthest_m,
                     went_m: at.distance(from),
+                    room_m: EDGE_M - from.north,
                 });
             }
         } else if f64::from(tick) * TICK.as_s() > LONGEST_S {
@@ -124,15 +172,7 @@ fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
         if fixes.len() > FIX_TICKS && tick % 2 == 0 && stopped.is_none() {
             let nav = fixes[fixes.len() - 1 - FIX_TICKS];
             let now = TICK * i64::from(tick);
-            let side = if ((now.as_s() / 8.0) as u32).is_multiple_of(2) {
-                1.0
-            } else {
-                -1.0
-            };
-            let order = Order::Steer {
-                heading_rad: heading_rad + side * turn_rad,
-                speed_m_s,
-            };
+            let order = ordered(now, begin + nav.at());
             let set_point = set_points.map(now, order, &nav);
             watch.note_order(
                 now,
@@ -189,15 +229,21 @@ fn drawn(i: u64, seas: usize) -> Approach {
     }
 }
 
-#[test]
-fn no_approach_to_the_geofence_crosses_it() {
-    let count =
-        std::env::var("SQUALL_APPROACHES").map_or(1000, |text| text.parse().expect("a number"));
+/// How many approaches to run.
+fn count() -> u64 {
+    std::env::var("SQUALL_APPROACHES").map_or(1000, |text| text.parse().expect("a number"))
+}
+
+/// Runs approaches on all cores, and returns their numbers with their ends.
+fn on_all_cores(
+    count: u64,
+    seas: &[PathBuf],
+    run: impl Fn(&Approach, &Boat, &Sea) -> Option<Ended> + Sync,
+) -> Vec<(u64, Option<Ended>)> {
     let boat = load_file::<Boat>(
         &Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/boats/surveyor_m1_8.toml"),
     )
     .unwrap_or_else(|problems| panic!("{problems}"));
-    let seas = seas();
     let workers = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let of_worker = |worker: u64| {
         let mut ended = vec![];
@@ -205,11 +251,11 @@ fn no_approach_to_the_geofence_crosses_it() {
             let drawn = drawn(i, seas.len());
             let (sea, _) = draw_file::<Sea>(&seas[drawn.sea], i)
                 .unwrap_or_else(|problems| panic!("{problems}"));
-            ended.push((i, approach(&drawn, &boat, &sea)));
+            ended.push((i, run(&drawn, &boat, &sea)));
         }
         ended
     };
-    let ended: Vec<_> = std::thread::scope(|scope| {
+    std::thread::scope(|scope| {
         let threads: Vec<_> = (0..workers)
             .map(|worker| scope.spawn(move || of_worker(worker)))
             .collect();
@@ -217,14 +263,24 @@ fn no_approach_to_the_geofence_crosses_it() {
             .into_iter()
             .flat_map(|thread| thread.join().expect("no panic"))
             .collect()
-    });
+    })
+}
+
+#[test]
+fn no_approach_to_the_geofence_crosses_it() {
+    let count = count();
+    let seas = seas();
+    let ended = on_all_cores(count, &seas, approach);
     let mut by_sea: BTreeMap<usize, (u32, u32, f64, f64)> = BTreeMap::new();
     let mut crossings = vec![];
     for (i, end) in &ended {
         let drawn = drawn(*i, seas.len());
         let (stopped, crossed, nearest_m, farthest_m) =
             by_sea.entry(drawn.sea).or_insert((0, 0, f64::MIN, 0.0));
-        let Some(Ended { crossed_m, went_m }) = end else {
+        let Some(Ended {
+            crossed_m, went_m, ..
+        }) = end
+        else {
             continue;
         };
         *stopped += 1;
@@ -257,5 +313,37 @@ fn no_approach_to_the_geofence_crosses_it() {
         "{} of {count} crossed:\n{}",
         crossings.len(),
         crossings[..crossings.len().min(20)].join("\n")
+    );
+}
+
+#[test]
+fn boats_that_play_well_inside_are_hardly_ever_stopped() {
+    let seas: Vec<PathBuf> = seas()
+        .into_iter()
+        .filter(|sea| !sea.to_string_lossy().ends_with("gale.toml"))
+        .collect();
+    let inside = |drawn: &Approach, boat: &Boat, sea: &Sea| {
+        let drawn = Approach {
+            from_m: 60.0,
+            ..*drawn
+        };
+        play(&drawn, boat, sea)
+    };
+    let ended = on_all_cores(count() / 4, &seas, inside);
+    let stopped: Vec<String> = ended
+        .iter()
+        .filter_map(|(i, end)| {
+            let Ended { room_m, .. } = end.as_ref()?;
+            let sea = seas[drawn(*i, seas.len()).sea]
+                .file_stem()?
+                .to_string_lossy();
+            (*room_m > ROOM_M).then(|| format!("{i}, {sea}: {room_m:.1} m from the edge"))
+        })
+        .collect();
+    println!("{} of {} stopped", stopped.len(), ended.len());
+    assert!(
+        stopped.len() * 50 <= ended.len(),
+        "more than 2 %:\n{}",
+        stopped.join("\n")
     );
 }

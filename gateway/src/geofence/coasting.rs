@@ -25,8 +25,12 @@ const LEEWAY_M_S: f64 = 0.2;
 const SLEW_SHARE: f64 = 0.75;
 /// Maximum duration of the prediction, s.
 const LONGEST_S: f64 = 60.0;
-/// The drift is a mean over about this time, s.
-const DRIFT_MEMORY_S: f64 = 5.0;
+/// The recent drift is a mean over about this time, s.
+const RECENT_S: f64 = 5.0;
+/// The lasting drift is a mean over about this time, s.
+const LASTING_S: f64 = 20.0;
+/// Time constant of drift that does not last, s: with a turn, side slip ends.
+const DECAY_S: f64 = 4.0;
 /// After a longer gap between orders the estimate restarts, s.
 const GAP_MAX_S: f64 = 1.5;
 /// Maximum turn of a boat while it coasts, rad.
@@ -151,16 +155,19 @@ impl Coasting {
         let Glide {
             water_m_s,
             drift_m_s,
+            transient_m_s,
             yaw_rate_rad_s,
             reaction_s,
             ..
         } = *glide;
+        let drifts = [drift_m_s, transient_m_s] != [Ned::default(); 2];
         let mut speed_m_s = water_m_s.length();
         let mut thrust_m_s = glide.thrust_m_s.min(self.speed_max_m_s);
         let course_rad = water_m_s.direction_rad();
         let until_fall_s = reaction_s + self.lag_s;
         let mut at = Ned::default();
         let mut t_s = 0.0_f64;
+        let [mut sailed_m, mut drifted_m] = [0.0; 2];
         let mut legs = vec![];
         for step in 1.. {
             let turned_s = t_s.min(reaction_s)
@@ -168,8 +175,11 @@ impl Coasting {
                     * (1.0 - math::exp((reaction_s - t_s).min(0.0) / self.yaw_s.max(1e-6)));
             let turned_rad = (yaw_rate_rad_s * turned_s).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
             let ahead = Rotation::from_heading(course_rad + turned_rad).ahead();
+            let drift_m_s = drift_m_s + transient_m_s.scaled(math::exp(-t_s / DECAY_S));
             at = at + (ahead.scaled(speed_m_s) + drift_m_s).scaled(STEP_S);
             t_s += STEP_S;
+            sailed_m += speed_m_s * STEP_S;
+            drifted_m += drift_m_s.length() * STEP_S;
             if t_s > until_fall_s {
                 thrust_m_s = self.fallen_thrust(thrust_m_s, 0.0, STEP_S);
                 let change = self.resistance_m_s2(thrust_m_s) - self.resistance_m_s2(speed_m_s);
@@ -182,18 +192,24 @@ impl Coasting {
                 speed_m_s = (speed_m_s + (change - decelerated) * STEP_S).max(0.0);
             }
             let is_at_rest = speed_m_s < REST_M_S && t_s > until_fall_s;
-            let is_over =
-                is_at_rest && (t_s >= DRIFT_S || drift_m_s == Ned::default()) || t_s >= LONGEST_S;
+            let is_over = is_at_rest && (t_s >= DRIFT_S || !drifts) || t_s >= LONGEST_S;
             if is_over {
                 at = at + ahead.scaled(self.tail_m(speed_m_s));
+                sailed_m += self.tail_m(speed_m_s);
             }
             if is_over || step % STEPS_PER_LEG == 0 {
-                let slack_m = if drift_m_s == Ned::default() {
-                    0.0
+                let slack_m = if drifts {
+                    LEEWAY_M_S * t_s
+                        + DRIFT_SLACK * drifted_m
+                        + (VEER_RAD + TURN_SLACK * turned_rad.abs()) * at.length()
                 } else {
-                    slack_m(&drift_m_s, t_s, turned_rad, at)
+                    0.0
                 };
-                legs.push(Leg { end: at, slack_m });
+                legs.push(Leg {
+                    end: at,
+                    slack_m,
+                    reach_m: sailed_m + (1.0 + DRIFT_SLACK) * drifted_m + LEEWAY_M_S * t_s,
+                });
             }
             if is_over {
                 break;
@@ -201,12 +217,6 @@ impl Coasting {
         }
         legs
     }
-}
-
-/// The lateral distance of a boat from its predicted position.
-fn slack_m(drift_m_s: &Ned, t_s: f64, turned_rad: f64, at: Ned) -> f64 {
-    (LEEWAY_M_S + DRIFT_SLACK * drift_m_s.length()) * t_s
-        + (VEER_RAD + TURN_SLACK * turned_rad.abs()) * at.length()
 }
 
 /// A leg of the path to rest.
@@ -217,6 +227,8 @@ pub(super) struct Leg {
     /// How far the boat may deviate laterally from that, m: leeway grows as the boat slows down,
     /// and a turn may continue.
     pub(super) slack_m: f64,
+    /// The greatest distance that the boat can be from its start, whatever its course, m.
+    pub(super) reach_m: f64,
 }
 
 /// A boat's motion when it starts to coast.
@@ -226,6 +238,8 @@ pub(super) struct Glide {
     pub(super) water_m_s: Ned,
     /// Velocity of the water, plus that caused by the wind, m/s.
     pub(super) drift_m_s: Ned,
+    /// More drift now, which decays: a boat slips sideways in a turn.
+    pub(super) transient_m_s: Ned,
     /// The steady speed of its present thrust, m/s.
     pub(super) thrust_m_s: f64,
     /// Rate of turn, rad/s.
@@ -247,7 +261,8 @@ pub(super) struct DriftEstimate {
     surge_m_s: f64,
     /// The steady speed of the present thrust, m/s.
     pub(super) thrust_m_s: f64,
-    /// The estimate, m/s.
+    /// The means over a short and a long time, m/s.
+    pub(super) recent_m_s: Ned,
     pub(super) drift_m_s: Ned,
 }
 
@@ -272,6 +287,7 @@ impl DriftEstimate {
                 lasted_s: 0.0,
                 surge_m_s: velocity_m_s.dot(ahead),
                 thrust_m_s: ordered_m_s,
+                recent_m_s: Ned::default(),
                 drift_m_s: Ned::default(),
             };
             return;
@@ -286,10 +302,14 @@ impl DriftEstimate {
             self.surge_m_s += change * step_s;
         }
         let rest = velocity_m_s - ahead.scaled(self.surge_m_s);
-        // A plain mean at first.
+        // Plain means at first.
         self.lasted_s += step_s;
-        let share = step_s / self.lasted_s.clamp(1e-3, DRIFT_MEMORY_S);
-        self.drift_m_s = self.drift_m_s + (rest - self.drift_m_s).scaled(share.min(1.0));
+        let towards = |mean: Ned, memory_s: f64| {
+            let fraction = step_s / self.lasted_s.clamp(1e-3, memory_s);
+            mean + (rest - mean).scaled(fraction.min(1.0))
+        };
+        self.recent_m_s = towards(self.recent_m_s, RECENT_S);
+        self.drift_m_s = towards(self.drift_m_s, LASTING_S);
     }
 
     /// Whether orders have been observed until now.

@@ -74,8 +74,8 @@ impl GeofenceWatch {
         }
     }
 
-    /// Records that the boat receives a set-point of this steady speed ahead, m/s, at this heading and velocity over
-    /// the ground.
+    /// Records that the boat receives a set-point of this steady speed ahead, m/s, at this heading
+    /// and velocity over the ground.
     pub fn note_order(&mut self, now: SimTime, ahead_m_s: f64, motion: (f64, Ned)) {
         if let Some(coasting) = &self.coasting {
             self.drift.observe(coasting, now, ahead_m_s, motion);
@@ -85,11 +85,17 @@ impl GeofenceWatch {
     /// Whether a boat here, with this velocity over the ground and rate of turn, is inside and can
     /// stop inside. A breach counts after the debounce time.
     pub fn is_inside(&mut self, now: SimTime, at: Ned, motion: (Ned, f64)) -> bool {
+        let room_m = self.area.clearance_m(at);
         // The whole path is checked, not only its end, which could lie beyond a keep-out or an
         // inward corner.
         let is_sound = |path: &Vec<Leg>| {
             let mut from = at;
             path.iter().all(|leg| {
+                // Slack adds up in a turn: far from the edge it exceeds what the boat can sail.
+                if room_m >= leg.reach_m {
+                    from = at + leg.end;
+                    return true;
+                }
                 let end = at + leg.end;
                 let is_inside = self.area.contains_way(from, end);
                 from = end;
@@ -127,6 +133,7 @@ impl GeofenceWatch {
         let braked = Leg {
             end: braked,
             slack_m: 0.0,
+            reach_m: braked.length(),
         };
         let Some(coasting) = &self.coasting else {
             return vec![vec![braked]];
@@ -134,6 +141,7 @@ impl GeofenceWatch {
         let still = Glide {
             water_m_s: velocity_m_s,
             drift_m_s: Ned::default(),
+            transient_m_s: Ned::default(),
             thrust_m_s: speed_m_s,
             yaw_rate_rad_s: 0.0,
             reaction_s,
@@ -157,16 +165,18 @@ impl GeofenceWatch {
             .as_ref()
             .filter(|_| self.drift.is_fresh(now))?;
         let DriftEstimate {
+            recent_m_s,
             drift_m_s,
             thrust_m_s,
             ..
         } = self.drift;
-        let water_m_s = velocity_m_s - drift_m_s;
+        let water_m_s = velocity_m_s - recent_m_s;
         let thrust_m_s = thrust_m_s.abs();
         let reaction_s = self.reaction_s();
         Some(coasting.path(&Glide {
             water_m_s,
             drift_m_s,
+            transient_m_s: recent_m_s - drift_m_s,
             thrust_m_s,
             yaw_rate_rad_s,
             reaction_s,
