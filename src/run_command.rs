@@ -149,6 +149,9 @@ fn play(
     let file = args.record.file(scenario, args.play.seed(scenario))?;
     let path = file.as_ref().map(|file| file.path().to_owned());
     let report = player.play(&args.play, scenario, file, (stop, &mut *screen))?;
+    for faults in report.iter().flat_map(|report| &report.run.entry_faults) {
+        screen::remark(&faults.to_string());
+    }
     let has_advantage = report
         .as_ref()
         .is_some_and(|report| report.outcome.ends_differ);

@@ -157,7 +157,17 @@ impl Pilot {
 
     /// Applies this action from the next decision on.
     pub fn act(&mut self, action: Action) {
-        self.follow(Chosen::of(self.actions, action, self.control.situation()));
+        self.act_in(self.actions, action);
+    }
+
+    /// Applies an action of this space from the next decision on.
+    pub(crate) fn act_in(&mut self, space: ActionSpace, action: Action) {
+        self.follow(Chosen::of(space, action, self.situation()));
+    }
+
+    /// The boat's knowledge.
+    pub(crate) fn situation(&self) -> &Situation {
+        self.control.situation()
     }
 
     /// Whether actions take effect: a tagged boat drives home, and one out of action stays still.

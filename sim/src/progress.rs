@@ -7,6 +7,7 @@ use rules::event::EventCursor;
 use scenario::Outcome;
 use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// A progress message.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -58,9 +59,38 @@ pub struct Run {
     pub overruns: u64,
     /// Whether it was stopped early.
     pub cut_short: bool,
+    /// Boats whose competition entry failed to decide.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub entry_faults: Vec<EntryFaults>,
     /// The fault in the recording, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording_problem: Option<String>,
+}
+
+/// Decisions for which a boat's competition entry gave no action.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EntryFaults {
+    /// The boat's name.
+    pub boat: String,
+    /// The first fault.
+    pub first: String,
+    /// Number of decisions.
+    pub count: u64,
+}
+
+impl fmt::Display for EntryFaults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let EntryFaults { boat, first, count } = self;
+        let times = if *count == 1 {
+            "once"
+        } else {
+            &format!("{count} times")
+        };
+        write!(
+            f,
+            "{boat} stopped {times} for want of an action; the first time: {first}"
+        )
+    }
 }
 
 /// The state of a running game.
