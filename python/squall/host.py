@@ -209,7 +209,9 @@ class World:
         if numbers.size == 1 and numbers[0] == int(numbers[0]) and -ACTIONS <= numbers[0] < ACTIONS:
             return int(numbers[0]) % ACTIONS  # As Python lists have it, -1 is the last.
         if numbers.size >= 2:
-            return [float(numbers[0]), float(numbers[1])]
+            # Half a turn to either side is a turn to that side; more is the shorter way round.
+            turn_deg = float(numbers[1])
+            return [float(numbers[0]), turn_deg if abs(turn_deg) <= 180.0 else (turn_deg + 180.0) % 360.0 - 180.0]
         raise ValueError(f"the action is {action!r}, expected one of {ACTIONS}, or a speed and a turn")
 
 
