@@ -9,9 +9,10 @@ use crate::pilot::{Pilot, Spaces};
 use crate::policy::Due;
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
+use primitives::angle::wrap_pi;
 use primitives::{SimTime, TeamId, VehicleId};
 use scenario::Scenario;
-use scenario::action::{Action, ActionSpace};
+use scenario::action::{Action, ActionSpace, SetPoint};
 use scenario::observation::ObservationSpace;
 use scenario::strategy::{Host, Program};
 use serde::Deserialize;
@@ -36,7 +37,7 @@ const OUTDATED_MAX: usize = 64;
 /// Maximum size of an answer, bytes.
 const ANSWER_MAX: u64 = 4096;
 /// The action of a boat without an answer: Pyquaticus' stop.
-const STOP: Action = Action::Discrete(16);
+const STOP: usize = 16;
 
 /// The entries of one group of minds, by team.
 #[derive(Default)]
@@ -311,28 +312,30 @@ impl HostMind {
             situation.ahead.dot(field.across),
         );
         let at_m = <[f64; 2]>::from(field.along_across(situation.at));
-        let top_m_s = situation.model.speed_max_m_s;
+        let (psi_rad, top_m_s) = (situation.own.nav.psi_rad, situation.model.speed_max_m_s);
+        let numbered = |index: usize| {
+            ActionSpace::Pyquaticus.set_point(Action::Discrete(index), psi_rad, top_m_s)
+        };
         let request = json!({
             "boat": situation.model.rank,
             "at_m": at_m,
             "heading_deg": heading_rad.to_degrees(),
             "observation": observation,
         });
-        match locked(&self.entry).ask(request) {
-            Ok(Chosen::Index(index)) => self
-                .pilot
-                .act_in(ActionSpace::Pyquaticus, Action::Discrete(index)),
-            Ok(Chosen::Turn([speed_m_s, turn_deg])) => {
-                let numbers = [turn_deg / 180.0, 2.0 * speed_m_s / top_m_s - 1.0];
-                let action = Action::Continuous(numbers.map(|number| number as f32));
-                self.pilot.act_in(ActionSpace::Continuous, action);
-            }
+        let set_point = match locked(&self.entry).ask(request) {
+            Ok(Chosen::Index(index)) => numbered(index),
+            Ok(Chosen::Turn([speed_m_s, turn_deg])) => SetPoint {
+                turn_rad: turn_deg.to_radians(),
+                course_rad: wrap_pi(psi_rad + turn_deg.to_radians()),
+                speed_m_s: speed_m_s.clamp(0.0, top_m_s),
+            },
             Err(why) => {
                 let (_, count) = self.faults.get_or_insert_with(|| (why, 0));
                 *count += 1;
-                self.pilot.act_in(ActionSpace::Pyquaticus, STOP);
+                numbered(STOP)
             }
-        }
+        };
+        self.pilot.steer(set_point);
     }
 }
 

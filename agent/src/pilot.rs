@@ -157,12 +157,12 @@ impl Pilot {
 
     /// Applies this action from the next decision on.
     pub fn act(&mut self, action: Action) {
-        self.act_in(self.actions, action);
+        self.follow(Chosen::of(self.actions, action, self.situation()));
     }
 
-    /// Applies an action of this space from the next decision on.
-    pub(crate) fn act_in(&mut self, space: ActionSpace, action: Action) {
-        self.follow(Chosen::of(space, action, self.situation()));
+    /// Turns and drives like this from the next decision on.
+    pub(crate) fn steer(&mut self, set_point: SetPoint) {
+        self.set_point = set_point;
     }
 
     /// The boat's knowledge.
@@ -195,9 +195,7 @@ impl Teacher {
                     .mode
                     .and_then(|mode| self.options[mode])
                     .map(Action::Discrete),
-                ActionSpace::Pyquaticus | ActionSpace::Continuous => {
-                    steered(&helm.situation, order, actions)
-                }
+                _ => steered(&helm.situation, order, actions),
             };
         }
     }

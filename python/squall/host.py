@@ -148,7 +148,8 @@ class World:
         found = self.observed(boat)
         if boat == self.me:
             names = [*OWN, *(each for _ in range(len(self.boats) - 1) for each in OTHER)]
-            return self.numbers[[self.game["has_disabled"] or name != "is_disabled" for name in names]]
+            kept = np.array([self.game["has_disabled"] or name != "is_disabled" for name in names])
+            return np.asarray(self.numbers[kept])
         numbers = []
         for name, value in found.items():
             low, high = self._ends(name if isinstance(name, str) else name[1])
@@ -236,7 +237,7 @@ class Entry:
             raise ValueError("gen_config.py asks for lidar observations, which Squall does not have")
         module = self._imported("solution", file)
         random.seed(game["seed"])
-        np.random.seed(game["seed"] % 2**32)  # noqa: NPY002  # Entries use it.
+        np.random.seed(game["seed"] % 2**32)  # Entries use it.
         if "torch" in sys.modules:
             sys.modules["torch"].manual_seed(game["seed"])
         self.solution = module.solution()

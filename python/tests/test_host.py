@@ -4,6 +4,7 @@ The recorded observations are those of Pyquaticus' own environment for the compe
 
 import json
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -135,7 +136,9 @@ def test_an_entry_sees_its_own_folder_its_history_and_a_seeded_numpy(tmp_path: P
     text += "        print('x' * 100000, flush=True); os.system('echo noise')\n"
     text += "        assert normalized[agent_id].shape == (3, 67) and obs[agent_id][2]['speed'] == 2.25\n"
     text += "        return [random.random(), np.random.random()]\n"
-    config = "config_dict_competition = {'short_obs_hist_length': 2, 'long_obs_hist_length': 2, 'long_obs_hist_interval': 4}"
+    config = (
+        "config_dict_competition = {'short_obs_hist_length': 2, 'long_obs_hist_length': 2, 'long_obs_hist_interval': 4}"
+    )
     folder = entry_of(tmp_path / "entry", text, helper="", gen_config=config)
     (folder / "weights.txt").write_text("1")
     first, again, other = asked(folder), asked(folder / "solution.py"), asked(folder, seed=2)
@@ -180,7 +183,7 @@ def test_a_check_shows_the_actions_and_how_to_play(tmp_path: Path) -> None:
 def test_an_entry_ends_with_its_host_even_if_it_is_busy_and_has_children(tmp_path: Path) -> None:
     marks = tmp_path / "marks"
     text = "import os, subprocess, sys\nclass solution:\n    def __init__(self):\n"
-    text += f"        child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'])\n"
+    text += "        child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'])\n"
     text += f"        open({str(marks)!r}, 'w').write(str(child.pid))\n        while True: pass\n"
     folder = entry_of(tmp_path / "entry", text)
     command = [sys.executable, "-m", "squall.host", str(folder), "--serve"]
@@ -269,7 +272,9 @@ def test_a_bad_entry_costs_only_its_own_team(
     program: str, tmp_path: Path, way: list[str], text: str, told: str, count: int
 ) -> None:
     entry_of(tmp_path / "entry", text)
-    strategy = 'base = "scenarios/strategies/policy.toml"\n[behaviour.learned]\nhost = "entry"\nlimit_s = 0.1\ndirect = true\n'
+    strategy = (
+        'base = "scenarios/strategies/policy.toml"\n[behaviour.learned]\nhost = "entry"\nlimit_s = 0.1\ndirect = true\n'
+    )
     (tmp_path / "bad.toml").write_text(strategy)
     game = played(program, tmp_path, "--blue", "./bad.toml", "--red", "easy_attackers", *way)
     assert game["duration_s"] == 600
@@ -286,37 +291,30 @@ def test_a_bad_entry_costs_only_its_own_team(
     assert told in faults[0]["first"] and game["shown"].count(faults[0]["first"]) <= 2 * len(boats)
 
 
-def test_an_agent_runs_no_entry_that_only_a_sim_names(program: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("is_named", [False, True])
+def test_an_agent_runs_no_entry_that_only_a_sim_names(program: str, tmp_path: Path, is_named: bool) -> None:
     made = tmp_path / "made"
-    entry_of(tmp_path / "entry", f"open({str(made)!r}, 'w')\n{HEAD}        return 0\n")
-    sim = subprocess.Popen(
-        [program, "sim", "attack_1v1", "--blue", "host:entry", "--listen", "tcp/127.0.0.1:17449", "--join-s", "30"],
-        cwd=tmp_path,
-        env={**os.environ, "SQUALL_TOKEN": "0" * 32},
-        stdout=subprocess.DEVNULL,
-    )
-    try:
-        names = subprocess.run([program, "show", "attack_1v1"], capture_output=True, text=True, check=False)
-        assert names.returncode in (0, 1, 2)
-        agent = [program, "agent", "--connect", "tcp/127.0.0.1:17449", "--vehicle", "blue_one", "red_one"]
-        shown = subprocess.run(
-            agent,
-            cwd=tmp_path,
-            env={**os.environ, "SQUALL_TOKEN": "0" * 32},
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-        )
-    finally:
-        sim.kill()
-        sim.wait()
-    assert "may not run it" in shown.stderr, shown.stderr
-    assert not made.exists()
+    entry = entry_of(tmp_path / "entry", f"open({str(made)!r}, 'w')\n{HEAD}        return 0\n")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        place = f"tcp/127.0.0.1:{free.getsockname()[1]}"
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    options: dict[str, Any] = {"cwd": tmp_path, "env": {**os.environ, "PATH": path, "SQUALL_TOKEN": "0" * 64}}
+    begin = [program, "sim", "attack_1v1", "--blue", "host:entry", "--listen", place, "--set", "game.duration_s=5"]
+    with subprocess.Popen(begin, stdout=subprocess.DEVNULL, **options):
+        agent = [program, "agent", "--connect", place, "--vehicle", "blue_one", "red_one"]
+        agent += ["--host", str(entry)] if is_named else []
+        shown = subprocess.run(agent, capture_output=True, text=True, timeout=120, check=False, **options)
+    assert ("this process may not run it" in shown.stderr) != is_named, shown.stderr
+    assert made.exists() == is_named
 
 
 def test_a_missing_entry_is_refused(program: str, tmp_path: Path) -> None:
     told = subprocess.run(
-        [program, "run", "mctf_2026", "--blue", "host:nowhere"], cwd=tmp_path, capture_output=True, text=True, check=False
+        [program, "run", "mctf_2026", "--blue", "host:nowhere"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert told.returncode == 2 and "no solution.py in nowhere" in told.stderr

@@ -1,7 +1,7 @@
 //! The behaviour of the kind `policy` and its keys; [`super::task`] has the other kinds.
 
 use super::Parameter;
-use crate::action::ActionSpace;
+use crate::action::ActionKey;
 use crate::observation::ObservationSpace;
 use crate::policy::PolicyModel;
 use schemars::JsonSchema;
@@ -65,8 +65,9 @@ struct ModelKeys {
     limit_s: Option<f64>,
     /// The model's inputs. Default: as in its metadata; for an entry, those of the game's year.
     observation: Option<ObservationSpace>,
-    /// The model's actions. Default: as in its metadata.
-    action: Option<ActionSpace>,
+    /// The model's actions: a name, or a table of [share of the top speed, turn in degrees clockwise].
+    /// Default: as in its metadata.
+    action: Option<ActionKey>,
     /// Time between decisions, s. Default: as in the model's metadata; for an entry, the game's.
     #[schemars(range(min = 0.01, max = 10))]
     period_s: Option<f64>,
