@@ -1,5 +1,5 @@
 //! A competition entry as the mind of boats: a Python process of its own decides for those of a
-//! team, and `python/squall/host.py` in it translates to the entry's terms.
+//! team, and `host.py` in it translates to the entry's terms.
 //!
 //! Like the boats of MOOS, an exception among minds: its decisions come from outside, and wait for
 //! them has a limit on the wall clock. Without an answer in time, the boat stops.
@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// The program that runs entries; passed as text, so that it needs no installation.
-const PROGRAM: &str = include_str!("../../python/squall/host.py");
+const PROGRAM: &str = include_str!("host.py");
 /// An entry loads its networks and libraries within this time.
 const LOAD_LIMIT: Duration = Duration::from_secs(60);
 /// An entry ends within this time once the game is over, or is killed.
@@ -376,5 +376,81 @@ impl Mind for HostMind {
 
     fn report(&self) -> Option<HelmReport> {
         self.pilot.report()
+    }
+}
+
+#[cfg(unix)]
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+    use std::path::Path;
+
+    /// An entry whose Python is a shell script that loads it, and runs `body` for request `$n`.
+    fn entry(folder: &Path, body: &str, is_allowed: bool) -> Entry {
+        let game = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/attack_1v1.toml");
+        let scenario = scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"));
+        let python = folder.join("python");
+        let loaded = r#"read game; echo '{"number":0,"action":0}'; n=0"#;
+        let all = "while read request; do n=$((n+1))";
+        std::fs::write(
+            &python,
+            format!("#!/bin/sh\n{loaded}\n{all}\n{body}\ndone\n"),
+        )
+        .unwrap();
+        std::fs::set_permissions(&python, PermissionsExt::from_mode(0o755)).unwrap();
+        let host = Host {
+            path: "entry".to_owned(),
+            python: python.display().to_string(),
+            limit_s: 0.3,
+            observation: None,
+            period_s: None,
+            is_allowed,
+        };
+        Entry::start(&scenario, TeamId(0), &host)
+    }
+
+    #[test]
+    fn a_late_wrong_or_dead_entry_costs_only_its_own_decisions() {
+        let answer = |what: &str| format!(r#"echo "{{\"number\":$n,{what}}}""#);
+        let late = "no answer within 300ms";
+        let after = format!("{late}, 3 times in a row");
+        let error = |why: &str| Err(why.to_owned());
+        for (body, want) in [
+            (answer(r#"\"action\":4"#), [Ok(Chosen::Index(4)), Ok(Chosen::Index(4))]),
+            (
+                answer(r#"\"action\":[1.5,-30]"#),
+                [Ok(Chosen::Turn([1.5, -30.0])), Ok(Chosen::Turn([1.5, -30.0]))],
+            ),
+            (answer(r#"\"error\":\"why\""#), [error("why"), error("why")]),
+            (answer(r#"\"action\":null"#), [error("it gave no action"), error("it gave no action")]),
+            (
+                "if [ $n = 2 ]; then echo '{\"number\":1,\"action\":9}'; echo '{\"number\":2,\"action\":3}'; else echo x; fi".to_owned(),
+                [error("it wrote to the pipe of its host"), Ok(Chosen::Index(3))],
+            ),
+            ("exit 1".to_owned(), [error("its process has ended"), error("its process has ended")]),
+            ("exec sleep 600".to_owned(), [error(late), error(late)]),
+        ] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut entry = entry(folder.path(), &body, true);
+            assert_eq!([(); 2].map(|()| entry.ask(json!({}))), want, "{body}");
+            if want[0] == error(late) {
+                assert_eq!([(); 2].map(|()| entry.ask(json!({}))), [error(late), error(&after)]);
+            }
+        }
+    }
+
+    #[test]
+    fn an_entry_that_another_process_names_is_not_started() {
+        let folder = tempfile::tempdir().unwrap();
+        let made = folder.path().join("made");
+        let body = format!(
+            "touch {}; echo '{{\"number\":1,\"action\":3}}'",
+            made.display()
+        );
+        for is_allowed in [false, true] {
+            let answer = entry(folder.path(), &body, is_allowed).ask(json!({}));
+            assert_eq!((answer.is_ok(), made.exists()), (is_allowed, is_allowed));
+        }
     }
 }

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squall import host
+from squall import convert, host
 
 RECORDED = Path(__file__).parents[2] / "agent" / "tests" / "helm" / "pyquaticus" / "2026_3v3.json"
 TOLERANCE = 3e-6
@@ -178,6 +178,8 @@ def test_a_check_shows_the_actions_and_how_to_play(tmp_path: Path) -> None:
     assert "compute_action takes 4 arguments" in told and "boat 2: 2 after" in told
     assert f"squall run mctf_2026 --blue host:{folder}" in told
     assert "there is no" in check(tmp_path / "nowhere", 1)
+    old = entry_of(tmp_path / "old", HEAD + "        return int(len(full_obs_normalized[agent_id]) == 61) or None\n")
+    assert f"squall run mctf_2025 --blue host:{old}" in check(old, 0)
 
 
 def test_an_entry_ends_with_its_host_even_if_it_is_busy_and_has_children(tmp_path: Path) -> None:
@@ -226,24 +228,33 @@ def played(program: str, folder: Path, *words: str) -> dict[str, Any]:
     return {**json.loads(result.read_text()), "shown": shown.stdout + shown.stderr}
 
 
-@pytest.mark.parametrize("way", [["--in-process"], []], ids=["in_process", "processes"])
-def test_an_exported_policy_plays_the_same_game_as_its_strategy(program: str, tmp_path: Path, way: list[str]) -> None:
-    convert = pytest.importorskip("squall.convert")
+TABLE = [[1.0, 2.5 * i - 19.5] for i in range(16)] + [[0.3, 180.0]]
+
+
+@pytest.mark.parametrize(
+    ("way", "actions"),
+    [(["--in-process"], "pyquaticus"), ([], "pyquaticus"), (["--in-process"], TABLE)],
+    ids=["in_process", "processes", "table"],
+)
+def test_an_exported_policy_plays_the_same_game_as_its_strategy(
+    program: str, tmp_path: Path, way: list[str], actions: Any
+) -> None:
     pytest.importorskip("onnx")
     random = np.random.default_rng(3)
     layers = []
     for inputs, outputs, scale in [(67, 32, 0.6), (32, 17, 1.5)]:
         weight = (random.normal(size=(outputs, inputs)) * scale).astype(np.float32)
         layers.append(convert.Layer("", weight, random.normal(size=outputs).astype(np.float32)))
-    policy = convert.Policy("", layers, [], "tanh", None)
     metadata = {
         "squall.observation": '{"kind":"pyquaticus_2026"}',
-        "squall.action": "pyquaticus",
+        "squall.action": actions if isinstance(actions, str) else json.dumps(actions),
         "squall.period_s": "1",
     }
+    policy = convert.Policy("", layers, [], "tanh", None)
     (tmp_path / "policy.onnx").write_bytes(convert.onnx_of(policy, metadata))
-    strategy = 'base = "scenarios/strategies/policy.toml"\n[behaviour.learned]\nmodel = "policy.onnx"\ndirect = true\n'
-    (tmp_path / "mine.toml").write_text(strategy)
+    text = 'base = "scenarios/strategies/policy.toml"\n[behaviour.learned]\nmodel = "policy.onnx"\ndirect = true\n'
+    text += f"action = {json.dumps(actions)}\n"
+    (tmp_path / "mine.toml").write_text(text)
     subprocess.run([program, "policy", "policy.onnx", "--submission", "entry"], cwd=tmp_path, check=True)
     games = []
     for team in ("./mine.toml", "host:entry"):
@@ -303,7 +314,7 @@ def test_an_agent_runs_no_entry_that_only_a_sim_names(program: str, tmp_path: Pa
     begin = [program, "sim", "attack_1v1", "--blue", "host:entry", "--listen", place, "--set", "game.duration_s=5"]
     with subprocess.Popen(begin, stdout=subprocess.DEVNULL, **options):
         agent = [program, "agent", "--connect", place, "--vehicle", "blue_one", "red_one"]
-        agent += ["--host", str(entry)] if is_named else []
+        agent += ["--host", "python3", str(entry)] if is_named else ["--host", "python3", str(tmp_path / "other")]
         shown = subprocess.run(agent, capture_output=True, text=True, timeout=120, check=False, **options)
     assert ("this process may not run it" in shown.stderr) != is_named, shown.stderr
     assert made.exists() == is_named

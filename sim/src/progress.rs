@@ -7,7 +7,6 @@ use rules::event::EventCursor;
 use scenario::Outcome;
 use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// A progress message.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -76,21 +75,6 @@ pub struct EntryFaults {
     pub first: String,
     /// Number of decisions.
     pub count: u64,
-}
-
-impl fmt::Display for EntryFaults {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let EntryFaults { boat, first, count } = self;
-        let times = if *count == 1 {
-            "once"
-        } else {
-            &format!("{count} times")
-        };
-        write!(
-            f,
-            "{boat} stopped {times} for want of an action; the first time: {first}"
-        )
-    }
 }
 
 /// The state of a running game.

@@ -22,9 +22,9 @@ pub(crate) struct Args {
     /// Strategy to follow instead of the one in the sim's scenario: a file or a name
     #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
-    /// Competition entry that the game's strategies may run, by its path there; repeatable. An agent
-    /// runs no other programs that a sim names
-    #[arg(long, value_name = "PATH")]
+    /// Python, and competition entry that the game's strategies may run with it, by its path there;
+    /// repeatable. An agent runs no other programs that a sim names
+    #[arg(long, num_args = 2, value_names = ["PYTHON", "PATH"])]
     host: Vec<String>,
     /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at
     /// every decision, s; at most half of the game's patience_s
@@ -48,7 +48,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let minds: Box<MindMaker> = Box::new(move |scenario, boats| {
         let mut scenario = scenario.clone();
         for host in scenario.strategies.iter_mut().flat_map(Strategy::hosts_mut) {
-            host.is_allowed = hosts.contains(&host.path);
+            let own = [&host.python, &host.path];
+            host.is_allowed = hosts.chunks(2).any(|pair| pair.iter().eq(own));
         }
         agent::minds_for(&scenario, boats.iter().copied(), strategy.as_ref())
     });
@@ -68,12 +69,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
                 screen::remark(&format!("{names}: refused or missed: {refused}"));
             }
             for (boat, first, count) in faults {
-                let faults = EntryFaults { boat, first, count };
                 if args.for_parent {
                     // The parent adds it to the game's result.
+                    let faults = EntryFaults { boat, first, count };
                     screen::print(&(serde_json::json!(faults).to_string() + "\n"));
                 } else {
-                    screen::remark(&faults.to_string());
+                    screen::remark(&format!(
+                        "{boat}: {first}; {count} decisions without an action"
+                    ));
                 }
             }
         }

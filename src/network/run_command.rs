@@ -273,7 +273,7 @@ fn start_agents(
         child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Team(team));
         command.arg("--vehicle").args(&names);
         for host in crew.iter().flat_map(|vehicle| hosts(vehicle)) {
-            command.arg("--host").arg(&host.path);
+            command.args(["--host", &host.python, &host.path]);
         }
         ChildProcess::start(
             &format!("the agent of {}", names.join(", ")),

@@ -2,8 +2,9 @@
 
 use primitives::angle::wrap_pi;
 use primitives::math;
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 /// What a policy chooses from.
@@ -11,9 +12,25 @@ use std::f64::consts::PI;
     clippy::large_enum_variant,
     reason = "spaces are few, and being copied makes them simpler to use"
 )]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
+    /// Those of Pyquaticus.
+    Pyquaticus,
+    /// A turn and a speed.
+    Continuous,
+    /// The values of a variable of a strategy.
+    Options,
+    /// Those of a table.
+    #[serde(untagged)]
+    Table(ActionTable),
+}
+
+/// What a policy chooses from, by name.
+#[derive(JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[expect(dead_code, reason = "only the schema is used")]
+enum Named {
     /// Those of Pyquaticus: full or half speed in eight directions, and a stop.
     Pyquaticus,
     /// Two numbers from -1 to 1: the turn in half turns clockwise, and the speed, from 0 to the
@@ -22,10 +39,16 @@ pub enum ActionSpace {
     /// The values of a variable of a strategy: what its rules and modes do, not how the boat
     /// steers.
     Options,
-    /// Those of a table.
-    #[serde(untagged)]
-    #[schemars(skip)]
-    Table(ActionTable),
+}
+
+impl JsonSchema for ActionSpace {
+    fn schema_name() -> Cow<'static, str> {
+        "ActionSpace".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Named::json_schema(generator)
+    }
 }
 
 /// Turns and speeds to choose from.

@@ -54,21 +54,21 @@ struct ModelKeys {
     /// ONNX file. Default: an external source proposes.
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a file"))]
     model: Option<String>,
-    /// Folder of a competition entry that decides in place of a model, or its `solution.py`.
+    /// Competition entry in place of a model: its folder or `solution.py`.
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a folder"))]
     host: Option<String>,
     /// Python that runs the entry. Default: python3.
     #[schemars(length(min = 1))]
     python: Option<String>,
-    /// Wall-clock time for each of the entry's decisions, s; without one, the boat stops. Default: 1.
+    /// Wall-clock limit of an entry's decision, s. Default: 1.
     #[schemars(range(min = 0.01, max = 60))]
     limit_s: Option<f64>,
-    /// The model's inputs. Default: as in its metadata; for an entry, those of the game's year.
+    /// The model's inputs. Default: as in its metadata; for an entry, the game's.
     observation: Option<ObservationSpace>,
     /// The model's actions: a name, or a table of [share of the top speed, turn in degrees clockwise].
     /// Default: as in its metadata.
     action: Option<ActionKey>,
-    /// Time between decisions, s. Default: as in the model's metadata; for an entry, the game's.
+    /// Time between decisions, s. Default: as in the metadata; for an entry, the game's.
     #[schemars(range(min = 0.01, max = 10))]
     period_s: Option<f64>,
 }
