@@ -1,11 +1,12 @@
 //! Plays a whole game in this process and optionally records it.
 
 use crate::clock;
+use agent::MindRunner;
 use anyhow::Result;
 use recording::NewFile;
 use rules::event::EventCursor;
 use scenario::Scenario;
-use sim::{Contest, GameRecorder, Report, Run};
+use sim::{Contest, EntryFaults, GameRecorder, Report, Run};
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,7 +29,16 @@ pub(crate) fn play(
     let mut recorder =
         file.map(|file| GameRecorder::in_process(file, &scenario.name, env!("SQUALL_COMMIT")));
     let mut written = EventCursor::default();
-    let watch = |contest: &mut Contest, _: &_| {
+    let mut entry_faults = vec![];
+    let watch = |contest: &mut Contest, runner: &MindRunner| {
+        if contest.is_over() || stop.load(Ordering::Relaxed) {
+            let faults = runner.faults().map(|(vehicle, first, count)| EntryFaults {
+                boat: scenario.vehicles[vehicle.index()].name.clone(),
+                first,
+                count,
+            });
+            entry_faults = faults.collect();
+        }
         if let Some(recorder) = &mut recorder {
             let frame = Arc::new(contest.frame(&mut written));
             recorder.decision(contest, frame);
@@ -42,6 +52,7 @@ pub(crate) fn play(
         pace: "in process".to_owned(),
         wall_s: start.elapsed().as_secs_f64(),
         cut_short: stop.load(Ordering::Relaxed),
+        entry_faults,
         ..Run::default()
     };
     let mut report = Report { outcome, run };

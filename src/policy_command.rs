@@ -167,6 +167,7 @@ fn action_text(space: ActionSpace) -> String {
         (ActionSpace::Pyquaticus, Some(count)) => {
             format!("pyquaticus: one of {count} turns and speeds")
         }
+        (ActionSpace::Table(_), Some(count)) => format!("a table of {count} turns and speeds"),
         (ActionSpace::Options, _) => "options: a value of a strategy's variable".to_owned(),
         _ => "continuous: a turn and a speed".to_owned(),
     }

@@ -12,6 +12,7 @@ use command_line::number::whole;
 use recording::NewFile;
 use scenario::Scenario;
 use sim::{ProgressMessage, Report, Reporter};
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -150,6 +151,13 @@ fn play(
     let file = args.record.file(scenario, args.play.seed(scenario))?;
     let path = file.as_ref().map(|file| file.path().to_owned());
     let report = player.play(&args.play, scenario, file, (stop, &mut *screen))?;
+    let mut faults = BTreeMap::<&str, u64>::new();
+    for boat in report.iter().flat_map(|report| &report.run.entry_faults) {
+        *faults.entry(&boat.first).or_default() += boat.count;
+    }
+    for (first, count) in faults {
+        screen::remark(&format!("{first}; {count} decisions without an action"));
+    }
     let has_advantage = report
         .as_ref()
         .is_some_and(|report| report.outcome.ends_differ);

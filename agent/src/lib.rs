@@ -7,6 +7,7 @@
 
 mod behaviour;
 mod helm;
+mod host;
 pub mod ivp;
 mod mind;
 #[cfg(feature = "net")]
@@ -28,31 +29,69 @@ pub use scenario::action::{Action, ActionSpace, SetPoint};
 pub use scenario::observation::ObservationSpace;
 pub use turning_circle::warnings;
 
+use host::{Entries, HostMind};
 use primitives::VehicleId;
 use scenario::Scenario;
 use scenario::strategy::{Program, Strategy, Task};
 
 /// The mind that the scenario's strategy assigns to this vehicle, for the scenario's seed.
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
-    mind(scenario, vehicle, roles::role_of(scenario, vehicle))
+    let role = roles::role_of(scenario, vehicle);
+    mind(scenario, vehicle, role, &mut Entries::default())
 }
 
 /// The mind that `strategy` assigns to this vehicle, whatever the scenario's own strategy.
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
-    let program = roles::role_in(scenario, vehicle, strategy);
-    mind(scenario, vehicle, program)
+    let role = roles::role_in(scenario, vehicle, strategy);
+    mind(scenario, vehicle, role, &mut Entries::default())
+}
+
+/// The minds that the scenario's strategies, or else `strategy`, assign to these vehicles. Boats of
+/// a team share the process of their competition entry.
+pub fn minds_for(
+    scenario: &Scenario,
+    vehicles: impl IntoIterator<Item = VehicleId>,
+    strategy: Option<&Strategy>,
+) -> Vec<(VehicleId, Box<dyn Mind>)> {
+    let mut entries = Entries::default();
+    let mut mind = |vehicle| {
+        let role = match strategy {
+            Some(strategy) => roles::role_in(scenario, vehicle, strategy),
+            None => roles::role_of(scenario, vehicle),
+        };
+        (vehicle, mind(scenario, vehicle, role, &mut entries))
+    };
+    vehicles.into_iter().map(&mut mind).collect()
 }
 
 /// A helm, or a policy that steers without one.
-fn mind(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> Box<dyn Mind> {
-    let direct = program
+fn mind(
+    scenario: &Scenario,
+    vehicle: VehicleId,
+    program: &Program,
+    entries: &mut Entries,
+) -> Box<dyn Mind> {
+    let mut policies = program
         .behaviours
         .iter()
-        .find_map(|behaviour| match &behaviour.task {
-            Task::Policy(policy) if policy.direct => Some((policy.model.clone()?, policy.sampled)),
+        .filter_map(|behaviour| match &behaviour.task {
+            Task::Policy(policy) => Some(policy),
             _ => None,
         });
-    let Some((model, is_sampled)) = direct else {
+    if let Some(host) = program.host() {
+        let is_direct = policies.any(|policy| policy.direct);
+        let entry = entries.entry(scenario, vehicle, host);
+        return Box::new(HostMind::new(
+            scenario,
+            vehicle,
+            (program, is_direct),
+            entry,
+        ));
+    }
+    let direct = policies.find(|policy| policy.direct);
+    let Some((model, is_sampled)) =
+        direct.and_then(|policy| Some((policy.model.clone()?, policy.sampled)))
+    else {
         return Box::new(HelmMind::restarting(scenario, vehicle, program));
     };
     let spaces = Spaces {
@@ -64,7 +103,7 @@ fn mind(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> Box<dyn M
 
 /// The minds of all vehicles, in the scenario's order.
 pub fn minds_of(scenario: &Scenario) -> Vec<Box<dyn Mind>> {
-    (0..scenario.vehicles.len())
-        .map(|i| mind_of(scenario, VehicleId::at(i)))
-        .collect()
+    let vehicles = (0..scenario.vehicles.len()).map(VehicleId::at);
+    let minds = minds_for(scenario, vehicles, None);
+    minds.into_iter().map(|(_, mind)| mind).collect()
 }

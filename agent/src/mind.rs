@@ -45,6 +45,11 @@ pub trait Mind: Any + Send {
         None
     }
 
+    /// The first fault of the program that decides for it, and the number of decisions with one.
+    fn faults(&self) -> Option<(String, u64)> {
+        None
+    }
+
     /// The state of the mind's helm, if any.
     fn report(&self) -> Option<HelmReport> {
         None

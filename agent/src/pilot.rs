@@ -160,7 +160,17 @@ impl Pilot {
 
     /// Applies this action from the next decision on.
     pub fn act(&mut self, action: Action) {
-        self.follow(Chosen::of(self.actions, action, self.control.situation()));
+        self.follow(Chosen::of(self.actions, action, self.situation()));
+    }
+
+    /// Turns and drives like this from the next decision on.
+    pub(crate) fn steer(&mut self, set_point: SetPoint) {
+        self.set_point = set_point;
+    }
+
+    /// The boat's knowledge.
+    pub(crate) fn situation(&self) -> &Situation {
+        self.control.situation()
     }
 
     /// Whether actions take effect: a tagged boat drives home, and one out of action stays still.
@@ -188,9 +198,7 @@ impl Teacher {
                     .mode
                     .and_then(|mode| self.options[mode])
                     .map(Action::Discrete),
-                ActionSpace::Pyquaticus | ActionSpace::Continuous => {
-                    steered(&helm.situation, order, actions)
-                }
+                _ => steered(&helm.situation, order, actions),
             };
         }
     }

@@ -29,6 +29,25 @@ pub(crate) enum PolicyFault {
     NotFinite,
 }
 
+/// The time of the next decision; `None`: at once.
+#[derive(Default)]
+pub(crate) struct Due(Option<SimTime>);
+
+impl Due {
+    pub(crate) fn is_due(&self, now: SimTime) -> bool {
+        self.0.is_none_or(|due| now >= due)
+    }
+
+    /// Notes that a decision is made now.
+    pub(crate) fn advance(&mut self, now: SimTime, period: SimTime) {
+        // Counted from decision to decision, not from picture to picture: lost pictures shift
+        // nothing.
+        let next = self.0.unwrap_or(now) + period;
+        // After a long gap, missed decisions are not made up.
+        self.0 = Some(if next > now { next } else { now + period });
+    }
+}
+
 /// A policy that decides for one boat.
 #[derive(Clone)]
 pub(crate) struct BoardPolicy {
@@ -36,8 +55,7 @@ pub(crate) struct BoardPolicy {
     network: Network,
     /// Created at the first decision.
     observer: Option<Observer>,
-    /// The time of the next decision; `None`: at once.
-    due: Option<SimTime>,
+    due: Due,
     /// The last choice.
     pub(crate) chosen: Result<Chosen, PolicyFault>,
     /// Number of decisions so far.
@@ -62,7 +80,7 @@ impl BoardPolicy {
             model,
             network,
             observer: None,
-            due: None,
+            due: Due::default(),
             chosen: Ok(Chosen::SetPoint(SetPoint::default())),
             decisions: 0,
             is_sampled,
@@ -70,25 +88,16 @@ impl BoardPolicy {
     }
 
     pub(crate) fn is_due(&self, now: SimTime) -> bool {
-        self.due.is_none_or(|due| now >= due)
+        self.due.is_due(now)
     }
 
     /// Decides if a decision is due.
     pub(crate) fn choose_if_due(&mut self, situation: &Situation) {
-        if !self.is_due(situation.now) {
-            return;
+        if self.is_due(situation.now) {
+            let period = SimTime::from_s(self.model.spec.period_s);
+            self.due.advance(situation.now, period);
+            self.chosen = self.choose(situation);
         }
-        let period = SimTime::from_s(self.model.spec.period_s);
-        // Counted from decision to decision, not from picture to picture: lost pictures shift
-        // nothing.
-        let next = self.due.map_or(situation.now, |due| due) + period;
-        // After a long gap, missed decisions are not made up.
-        self.due = Some(if next > situation.now {
-            next
-        } else {
-            situation.now + period
-        });
-        self.chosen = self.choose(situation);
     }
 
     fn choose(&mut self, situation: &Situation) -> Result<Chosen, PolicyFault> {

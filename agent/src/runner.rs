@@ -161,6 +161,14 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.sent = sent;
     }
 
+    /// The boats whose program had faults, each with the first and their number.
+    pub fn faults(&self) -> impl Iterator<Item = (VehicleId, String, u64)> {
+        self.minds().filter_map(|(vehicle, mind)| {
+            let (first, count) = mind.faults()?;
+            Some((vehicle, first, count))
+        })
+    }
+
     /// The number of the last decision.
     pub fn decided(&self) -> Option<u64> {
         self.decided.map(|stamp| stamp.seq)

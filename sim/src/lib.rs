@@ -37,7 +37,7 @@ pub use afloat::{NotAfloat, afloat};
 pub use contest::{Contest, RestoreError};
 pub use external::BadReport;
 #[cfg(feature = "record")]
-pub use progress::{Progress, ProgressMessage, Report, Reporter, Run};
+pub use progress::{EntryFaults, Progress, ProgressMessage, Report, Reporter, Run};
 #[cfg(feature = "record")]
 pub use recorder::GameRecorder;
 pub use spawn::NoStart;

@@ -58,9 +58,23 @@ pub struct Run {
     pub overruns: u64,
     /// Whether it was stopped early.
     pub cut_short: bool,
+    /// Boats whose competition entry failed to decide.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub entry_faults: Vec<EntryFaults>,
     /// The fault in the recording, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording_problem: Option<String>,
+}
+
+/// Decisions for which a boat's competition entry gave no action.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EntryFaults {
+    /// The boat's name.
+    pub boat: String,
+    /// The first fault.
+    pub first: String,
+    /// Number of decisions.
+    pub count: u64,
 }
 
 /// The state of a running game.

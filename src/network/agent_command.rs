@@ -7,6 +7,7 @@ use agent::node::{MindMaker, News, Settings};
 use anyhow::{Context, Result};
 use command_line::number::seconds;
 use scenario::strategy::Strategy;
+use sim::EntryFaults;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -21,6 +22,10 @@ pub(crate) struct Args {
     /// Strategy to follow instead of the one in the sim's scenario: a file or a name
     #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
+    /// Python, and competition entry that the game's strategies may run with it, by its path there;
+    /// repeatable. An agent runs no other programs that a sim names
+    #[arg(long, num_args = 2, value_names = ["PYTHON", "PATH"])]
+    host: Vec<String>,
     /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at
     /// every decision, s; at most half of the game's patience_s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds)]
@@ -38,23 +43,42 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         scenario::load_file::<Strategy>(path)
             .with_context(|| format!("cannot use the strategy {}", path.display()))
     };
-    let by = |strategy: Strategy| -> Box<MindMaker> {
-        Box::new(move |scenario, boat| agent::mind_by(scenario, boat, &strategy))
-    };
-    let mind = args.strategy.as_ref().map(load).transpose()?.map(by);
+    let strategy = args.strategy.as_ref().map(load).transpose()?;
+    let hosts = args.host.clone();
+    let minds: Box<MindMaker> = Box::new(move |scenario, boats| {
+        let mut scenario = scenario.clone();
+        for host in scenario.strategies.iter_mut().flat_map(Strategy::hosts_mut) {
+            let own = [&host.python, &host.path];
+            host.is_allowed = hosts.chunks(2).any(|pair| pair.iter().eq(own));
+        }
+        agent::minds_for(&scenario, boats.iter().copied(), strategy.as_ref())
+    });
     let settings = Settings {
         game: args.join.leaf.game.clone(),
         place: args.join.leaf.place()?,
         vehicles: args.vehicle.clone(),
         wait: Duration::from_secs_f64(args.join.wait_s),
         silence: Duration::from_secs_f64(args.join.silence_s),
-        mind,
+        minds: Some(minds),
         policy_wait: Duration::from_secs_f64(args.policy_wait_s),
         stop: stop.clone(),
     };
     let mut tell = |news: News<'_>| match news {
-        News::Left { refused } if refused.total() > 0 => {
-            screen::remark(&format!("{names}: refused or missed: {refused}"));
+        News::Left { refused, faults } => {
+            if refused.total() > 0 {
+                screen::remark(&format!("{names}: refused or missed: {refused}"));
+            }
+            for (boat, first, count) in faults {
+                if args.for_parent {
+                    // The parent adds it to the game's result.
+                    let faults = EntryFaults { boat, first, count };
+                    screen::print(&(serde_json::json!(faults).to_string() + "\n"));
+                } else {
+                    screen::remark(&format!(
+                        "{boat}: {first}; {count} decisions without an action"
+                    ));
+                }
+            }
         }
         News::Looking { reason } if !args.for_parent => {
             screen::remark(&format!("{names}: looking for the game: {reason}"));
@@ -62,7 +86,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         News::Joined { game } if !args.for_parent => {
             screen::remark(&format!("{names}: joined {game}"))
         }
-        News::Left { .. } | News::Looking { .. } | News::Joined { .. } => {}
+        News::Looking { .. } | News::Joined { .. } => {}
     };
     agent::node::serve(&settings, &mut tell).with_context(|| format!("the agent of {names}"))?;
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);

@@ -17,6 +17,7 @@ use command_line::explain::UsageError;
 use command_line::number::whole;
 use recording::{LentFile, NewFile};
 use scenario::{Scenario, Vehicle};
+use sim::EntryFaults;
 use sim::node::{Pace, ProgressMessage, Report};
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
@@ -137,12 +138,14 @@ impl Player for Processes<'_> {
         } else {
             None
         };
-        let agents = start_agents(args, scenario, &game, &endpoint)?;
+        let mut agents = start_agents(args, scenario, &game, &endpoint)?;
+        let faults = agents.iter_mut().map(|agent| agent.lines(faults_of));
+        let faults = faults.collect::<Result<Vec<_>>>()?;
         let hardware_loop =
             args.hardware_loop
                 .start((play, &args.pace), scenario, place, args.keys.as_deref())?;
         let token = args.keys.is_none().then(child_process::token);
-        let report = follow(
+        let mut report = follow(
             &messages,
             (&mut sim, self.page.as_mut(), token),
             stop,
@@ -156,6 +159,9 @@ impl Player for Processes<'_> {
             if !stop.load(Ordering::Relaxed) {
                 screen::remark(&problem);
             }
+        }
+        if let Some(report) = &mut report {
+            report.run.entry_faults = faults.iter().flatten().collect();
         }
         if report.is_none() && !stop.load(Ordering::Relaxed) {
             bail!("the sim ended without a result");
@@ -225,6 +231,11 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
+/// The line in which an agent reports the faults of a boat's competition entry.
+fn faults_of(line: &str) -> Option<EntryFaults> {
+    serde_json::from_str(line).ok()
+}
+
 /// The number of boats for one agent process: the requested number, or more if the processes for so
 /// many boats would overload the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
@@ -232,7 +243,8 @@ fn crew_size(asked: u16, vehicles: usize) -> usize {
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))
 }
 
-/// Starts the agent processes. With keys, each one serves a single team.
+/// Starts the agent processes. With keys, each one serves a single team; one serves all boats of a
+/// team with a competition entry, which is a program for the whole team.
 fn start_agents(
     args: &Args,
     scenario: &Scenario,
@@ -240,25 +252,33 @@ fn start_agents(
     endpoint: &str,
 ) -> Result<Vec<ChildProcess>> {
     let mut vehicles: Vec<&Vehicle> = scenario.vehicles.iter().collect();
-    let is_together =
-        |one: &&Vehicle, other: &&Vehicle| args.keys.is_none() || one.team == other.team;
-    if args.keys.is_some() {
+    let hosts = |vehicle: &Vehicle| scenario.strategies[vehicle.strategy].hosts();
+    let is_by_team = args.keys.is_some() || vehicles.iter().any(|v| hosts(v).next().is_some());
+    let is_together = |one: &&Vehicle, other: &&Vehicle| !is_by_team || one.team == other.team;
+    if is_by_team {
         vehicles.sort_by_key(|vehicle| vehicle.team);
     }
     let size = crew_size(args.agents_per_process, vehicles.len());
+    let size_of = |crew: &[&Vehicle]| match crew.iter().any(|v| hosts(v).next().is_some()) {
+        true => crew.len(),
+        false => size,
+    };
     let crews = vehicles
         .chunk_by(is_together)
-        .flat_map(|crew| crew.chunks(size));
+        .flat_map(|crew| crew.chunks(size_of(crew)));
     let start = |crew: &[&Vehicle]| {
         let names: Vec<&str> = crew.iter().map(|vehicle| vehicle.name.as_str()).collect();
         let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
         let team = scenario.teams[crew[0].team.index()].name.clone();
         child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Team(team));
         command.arg("--vehicle").args(&names);
+        for host in crew.iter().flat_map(|vehicle| hosts(vehicle)) {
+            command.args(["--host", &host.python, &host.path]);
+        }
         ChildProcess::start(
             &format!("the agent of {}", names.join(", ")),
             command,
-            Stdio::null(),
+            Stdio::piped(),
         )
     };
     crews.map(start).collect()

@@ -51,6 +51,13 @@ pub(crate) fn write(model: &PolicyModel, is_sampled: bool, folder: &Path) -> Res
         .replace("@OUTPUT@", &network.outputs()[model.output()].name)
         .replace("@CONTINUOUS@", python(model.actions().is_none()))
         .replace("@SAMPLED@", python(is_sampled));
+    let solution = match spec.action {
+        ActionSpace::Table(table) => {
+            let table = serde_json::to_string(&table)?;
+            solution.replace("ACTIONS = None", &format!("ACTIONS = {table}"))
+        }
+        _ => solution,
+    };
     output_file::make_folder(folder)?;
     for (name, bytes) in [
         ("solution.py", solution.as_bytes()),

@@ -11,7 +11,8 @@ import numpy as np
 
 OBSERVATION = "@OBSERVATION@"  # what the network was trained with
 OUTPUT = "@OUTPUT@"  # the network's output with the action
-CONTINUOUS = @CONTINUOUS@  # whether its actions are a turn and a speed, or one of 17
+CONTINUOUS = @CONTINUOUS@  # whether its actions are a turn and a speed, or one of several
+ACTIONS = None  # a table of its actions, each a fraction of the top speed and a turn in degrees
 SAMPLED = @SAMPLED@  # whether actions are sampled from the network's probabilities
 SPEED_MAX_M_S = 3.0  # of the competition's Surveyor
 DIAGONAL_M = math.hypot(160.0, 80.0)  # of its field
@@ -34,10 +35,12 @@ class solution:
             turn, speed = np.clip(output[:2], -1.0, 1.0)
             return np.array([0.5 * (1.0 + speed) * SPEED_MAX_M_S, 180.0 * turn], np.float32)
         if output.size == 1:
-            return int(output[0])
-        if SAMPLED:
-            return int(self.random.choice(output.size, p=softmax(output.astype(np.float64), -1)))
-        return int(np.argmax(output))
+            action = int(output[0])
+        elif SAMPLED:
+            action = int(self.random.choice(output.size, p=softmax(output.astype(np.float64), -1)))
+        else:
+            action = int(np.argmax(output))
+        return action if ACTIONS is None else [ACTIONS[action][0] * SPEED_MAX_M_S, ACTIONS[action][1]]
 
 
 def observed(numbers):

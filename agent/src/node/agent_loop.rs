@@ -6,14 +6,14 @@ use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
 use super::settings::Settings;
 use super::talk::Talk;
-use crate::{MindRunner, mind_of};
+use crate::{MindRunner, minds_for};
 use bus::game_search::Joined;
 use bus::{Bus, Declaration, Delivery, Latest, Patience, Priority, Publisher, SimState, SimWatch};
 use messages::refusal::{Refusal, Refusals};
 use messages::topic::{self, GameName};
 use messages::{GameInfo, Picture};
-use primitives::TeamId;
 use primitives::codec::{self, DecodeError};
+use primitives::{TeamId, VehicleId};
 use scenario::Scenario;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -60,16 +60,16 @@ impl AgentLoop {
         settings: &Settings,
     ) -> Result<AgentLoop, NodeError> {
         let scenario = &info.scenario;
-        let mind = |vehicle| match &settings.mind {
-            Some(mind) => mind(scenario, vehicle),
-            None => mind_of(scenario, vehicle),
-        };
         // The sim rejects unknown names.
         let known = settings
             .vehicles
             .iter()
             .filter_map(|name| scenario.vehicle_by_name(name));
-        let runner = MindRunner::new(known.map(|vehicle| (vehicle, mind(vehicle))));
+        let known: Vec<VehicleId> = known.collect();
+        let runner = MindRunner::new(match &settings.minds {
+            Some(minds) => minds(scenario, &known),
+            None => minds_for(scenario, known, None),
+        });
         // The sim waits `patience_s` before it drops an agent. Waits for mates use at most half of
         // it, so that a late mate cannot cost this agent the game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
@@ -137,6 +137,11 @@ impl AgentLoop {
         self.ticket = joined.ticket;
         self.helm_queries = Some(HelmQueries::open(bus, game, scenario, &self.runner)?);
         Ok(())
+    }
+
+    /// The boats whose program had faults.
+    pub(super) fn faults(&self) -> impl Iterator<Item = (VehicleId, String, u64)> {
+        self.runner.faults()
     }
 
     /// All rejected messages so far, and expected ones that never arrived.
@@ -268,7 +273,7 @@ fn keep(pictures: &Arc<Latest<Vec<Vec<u8>>>>, cell: usize) -> impl Fn(&[u8]) + u
 mod tests {
     use super::*;
     use messages::{EventRecord, Stamp};
-    use primitives::{SimTime, VehicleId};
+    use primitives::SimTime;
     use rules::event::{Event, Logged};
 
     /// A picture in which boat `seq` left the field.

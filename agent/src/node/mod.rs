@@ -18,6 +18,7 @@ use agent_loop::AgentLoop;
 use bus::game_search::{self, GameSearch};
 use messages::Role;
 use messages::refusal::Refusals;
+use primitives::VehicleId;
 
 /// What an agent reports to the program that runs it.
 pub enum News<'a> {
@@ -35,6 +36,8 @@ pub enum News<'a> {
     Left {
         /// Counts of rejected messages, and of expected ones that never arrived.
         refused: Refusals,
+        /// The boats whose program had faults, each with the first and their number.
+        faults: Vec<(String, String, u64)>,
     },
 }
 
@@ -57,8 +60,13 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         game: game.as_str(),
     });
     let played = agent.play(&settings.stop);
+    let name = |(vehicle, first, count): (VehicleId, String, u64)| {
+        let name = info.scenario.vehicles[vehicle.index()].name.clone();
+        (name, first, count)
+    };
     tell(News::Left {
         refused: agent.refusals(),
+        faults: agent.faults().map(name).collect(),
     });
     // Closing the link tells the sim at once that the agent has left; its boats hold from the next
     // decision on.

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// Makes the mind of a vehicle.
-pub type MindMaker = dyn Fn(&Scenario, VehicleId) -> Box<dyn Mind> + Send;
+/// Makes the minds of vehicles.
+pub type MindMaker = dyn Fn(&Scenario, &[VehicleId]) -> Vec<(VehicleId, Box<dyn Mind>)> + Send;
 
 /// Settings of an agent node.
 pub struct Settings {
@@ -25,7 +25,7 @@ pub struct Settings {
     /// Without a picture for this long, the sim is treated as lost.
     pub silence: Duration,
     /// Makes the minds; `None`: by the scenario's strategies.
-    pub mind: Option<Box<MindMaker>>,
+    pub minds: Option<Box<MindMaker>>,
     /// In lockstep: maximum wait for a policy's proposal at every decision, limited to half of the
     /// scenario's patience.
     pub policy_wait: Duration,

@@ -40,6 +40,14 @@ pub(crate) struct GameModel {
     points: Vec<(String, Ned)>,
 }
 
+/// The score that ends a game, or Pyquaticus's default.
+pub(crate) fn score_max(scenario: &Scenario) -> f64 {
+    scenario
+        .rules
+        .win_score
+        .map_or(PYQUATICUS_SCORE_MAX, f64::from)
+}
+
 impl GameModel {
     pub(crate) fn new(scenario: &Scenario, me: VehicleId, program: &Program) -> GameModel {
         let team = scenario.vehicles[me.index()].team;
@@ -77,10 +85,7 @@ impl GameModel {
             mates: of(true).filter(|vehicle| *vehicle != me).collect(),
             targets: flags(false),
             own_flags: flags(true),
-            score_max: scenario
-                .rules
-                .win_score
-                .map_or(PYQUATICUS_SCORE_MAX, f64::from),
+            score_max: score_max(scenario),
             boat_speeds_m_s,
             speed_max_m_s: program
                 .helm

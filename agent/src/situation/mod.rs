@@ -12,6 +12,7 @@ pub(crate) use moving_point::MovingPoint;
 use crate::mind::Proposal;
 use crate::own_motion::OwnMotion;
 use game_model::GameModel;
+pub(crate) use game_model::score_max;
 use interception::{Interceptor, Intruder, Pair};
 use messages::Picture;
 use messages::picture::{Contact, OwnBoat};

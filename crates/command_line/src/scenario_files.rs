@@ -4,7 +4,7 @@
 use crate::{program, terminal};
 use anyhow::{Result, anyhow, bail};
 use include_dir::{Dir, include_dir};
-use scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
+use scenario::{Kind, built_in, did_you_mean, entry, other_kind, set_built_in};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -74,6 +74,14 @@ pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
 /// The same, but searches the folder `beside` first for a name.
 pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
+    if kind == Kind::STRATEGY {
+        if let Some(entry) = word.strip_prefix("host:") {
+            return entry::strategy_path(entry).map_err(anyhow::Error::msg);
+        }
+        if entry::is_strategy_path(&given) {
+            return Ok(given);
+        }
+    }
     if given.extension().is_some_and(|end| end == "mcap") {
         bail!(
             "{word} is a recording, expected a {kind}; show it with squall replay, or analyse it with squall log"

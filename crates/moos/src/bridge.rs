@@ -235,19 +235,19 @@ impl Bridge<'_> {
         };
         let boats = self.boats.clone();
         let moos = self.moos;
-        let make =
-            move |scenario: &Scenario, vehicle: primitives::VehicleId| -> Box<dyn agent::Mind> {
+        let make = move |scenario: &Scenario, vehicles: &[primitives::VehicleId]| {
+            let scenario = Arc::new(scenario.clone());
+            let mind = |vehicle: &primitives::VehicleId| -> (_, Box<dyn agent::Mind>) {
                 let wanted = &scenario.vehicles[vehicle.index()].name;
                 let community = boats.iter().find(|community| name(community) == *wanted);
                 let community =
                     Arc::clone(community.expect("only boats with a community are requested"));
-                Box::new(BoatMind::new(
-                    Arc::new(scenario.clone()),
-                    vehicle,
-                    community,
-                    moos,
-                ))
+                let scenario = Arc::clone(&scenario);
+                let mind = BoatMind::new(scenario, *vehicle, community, moos);
+                (*vehicle, Box::new(mind))
             };
+            vehicles.iter().map(mind).collect()
+        };
         let Settings {
             place,
             wait,
@@ -261,14 +261,14 @@ impl Bridge<'_> {
             vehicles: self.boats.iter().map(name).collect(),
             wait: *wait,
             silence: *silence,
-            mind: Some(Box::new(make)),
+            minds: Some(Box::new(make)),
             policy_wait: Duration::ZERO,
             stop: Arc::clone(stop),
         };
         let mut tell = |news: agent::node::News<'_>| match news {
             agent::node::News::Looking { reason } => (self.tell)(News::Looking(reason)),
             agent::node::News::Joined { game } => (self.tell)(News::Joined(game)),
-            agent::node::News::Left { refused } if refused.total() > 0 => {
+            agent::node::News::Left { refused, .. } if refused.total() > 0 => {
                 (self.tell)(News::Note(format!("refused or missed: {refused}")));
             }
             agent::node::News::Left { .. } => {}

@@ -2,14 +2,35 @@
 
 use primitives::angle::wrap_pi;
 use primitives::math;
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 /// The actions that a policy can choose from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there are few spaces, and copies make them simpler to use"
+)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
+    /// Those of Pyquaticus.
+    Pyquaticus,
+    /// A turn and a speed.
+    Continuous,
+    /// The values of a variable of a strategy.
+    Options,
+    /// Those of a table.
+    #[serde(untagged)]
+    Table(ActionTable),
+}
+
+/// What a policy chooses from, by name.
+#[derive(JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[expect(dead_code, reason = "only the schema is used")]
+enum Named {
     /// Those of Pyquaticus: full or half speed in eight directions, and a stop.
     Pyquaticus,
     /// Two numbers from -1 to 1: the turn in half turns clockwise, and the speed, from 0 to the
@@ -19,6 +40,83 @@ pub enum ActionSpace {
     /// steers.
     Options,
 }
+
+impl JsonSchema for ActionSpace {
+    fn schema_name() -> Cow<'static, str> {
+        "ActionSpace".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Named::json_schema(generator)
+    }
+}
+
+/// Turns and speeds to choose from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
+pub struct ActionTable {
+    /// Share of the boat's top speed, and turn in degrees clockwise.
+    actions: [[f64; 2]; ACTIONS_MAX],
+    count: usize,
+}
+
+/// Maximum number of actions of a table.
+const ACTIONS_MAX: usize = 64;
+
+// Its numbers are finite.
+impl Eq for ActionTable {}
+
+impl ActionTable {
+    fn actions(&self) -> &[[f64; 2]] {
+        &self.actions[..self.count]
+    }
+}
+
+impl From<ActionTable> for Vec<[f64; 2]> {
+    fn from(table: ActionTable) -> Vec<[f64; 2]> {
+        table.actions().to_vec()
+    }
+}
+
+impl TryFrom<Vec<[f64; 2]>> for ActionTable {
+    type Error = String;
+
+    fn try_from(given: Vec<[f64; 2]>) -> Result<ActionTable, String> {
+        let count = given.len();
+        if !(2..=ACTIONS_MAX).contains(&count) {
+            return Err(format!("{count} actions, expected 2 to {ACTIONS_MAX}"));
+        }
+        let is_wrong = |[speed, turn_deg]: &[f64; 2]| {
+            !((0.0..=1.0).contains(speed) && turn_deg.abs() <= 180.0)
+        };
+        if let Some([speed, turn_deg]) = given.iter().find(|action| is_wrong(action)) {
+            return Err(format!(
+                "the action [{speed}, {turn_deg}], expected [0 to 1, -180 to 180]"
+            ));
+        }
+        let mut actions = [[0.0; 2]; ACTIONS_MAX];
+        actions[..count].copy_from_slice(&given);
+        Ok(ActionTable { actions, count })
+    }
+}
+
+/// The key for actions in a file: a named space, or a table.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "only the schema is used")]
+#[schemars(extend("x-expected" = "pyquaticus, continuous, options, or a list of [share of the top speed, turn in degrees]"))]
+pub(crate) enum ActionKey {
+    Named(ActionSpace),
+    Table(#[schemars(length(min = 2, max = 64))] Vec<TableAction>),
+}
+
+/// A share of the boat's top speed, and a turn in degrees clockwise.
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "only the schema is used")]
+pub(crate) struct TableAction(
+    #[schemars(range(min = 0, max = 1))] f64,
+    #[schemars(range(min = -180, max = 180))] f64,
+);
 
 /// A policy's choice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -105,6 +203,7 @@ impl ActionSpace {
     pub fn count(self) -> Option<usize> {
         match self {
             ActionSpace::Pyquaticus => Some(SPEEDS.len() * TURNS + 1),
+            ActionSpace::Table(table) => Some(table.count),
             ActionSpace::Continuous | ActionSpace::Options => None,
         }
     }
@@ -153,6 +252,10 @@ impl ActionSpace {
                 PI - (i % TURNS) as f64 * 2.0 * PI / TURNS as f64,
                 SPEEDS[i / TURNS],
             ),
+            (ActionSpace::Table(table), Action::Discrete(i)) if i < table.count => {
+                let [speed, turn_deg] = table.actions()[i];
+                (turn_deg.to_radians(), speed)
+            }
             (ActionSpace::Continuous, Action::Continuous([turn, speed]))
                 if turn.is_finite() && speed.is_finite() =>
             {
@@ -192,6 +295,43 @@ mod tests {
                 "{i}: {got:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_table_s_actions_are_its_own_and_faulty_tables_are_refused() {
+        let read = serde_json::from_str::<ActionSpace>;
+        let text = "[[1.0,-0.25],[0.5,180.0],[0.0,0.0]]";
+        let space = read(text).expect("it is a table");
+        assert_eq!(serde_json::to_string(&space).expect("JSON"), text);
+        assert_eq!(
+            (space.count(), space.outputs(), space.is_discrete()),
+            (Some(3), 3, true)
+        );
+        for (i, want) in [
+            (0, (3.0, -0.25)),
+            (1, (1.5, 180.0)),
+            (2, (0.0, 0.0)),
+            (3, (0.0, 0.0)),
+        ] {
+            let got = space.set_point(Action::Discrete(i), 1.0, 3.0);
+            assert_eq!(
+                (got.speed_m_s, got.turn_rad),
+                (want.0, f64::to_radians(want.1))
+            );
+        }
+        assert_eq!(space.words(1), "50 % speed, about");
+        assert_eq!(space.nearest(3.0, 1.4, 3.0), Some(Action::Discrete(1)));
+        for wrong in [
+            "[[1,0]]",
+            "[[1.1,0],[0,0]]",
+            "[[1,0],[0,181]]",
+            "[[1,0],[0]]",
+            "\"x\"",
+        ] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+        let many = serde_json::to_string(&vec![[0.5, 0.0]; 65]).expect("JSON");
+        assert!(read(&many).is_err());
     }
 
     #[test]

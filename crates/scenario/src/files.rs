@@ -1,6 +1,7 @@
 //! The files that scenarios are read from: on disk, each read once, or stored copies.
 
 use super::built_in::{built_in, note_override};
+use super::entry;
 use primitives::input_file;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -45,6 +46,11 @@ impl Files {
         }
     }
 
+    /// Whether these are stored copies, which may be another process's.
+    pub(super) fn is_stored(&self) -> bool {
+        self.is_complete
+    }
+
     /// The files read so far, in order of first request.
     pub fn list(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
         let read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
@@ -70,9 +76,13 @@ impl Files {
             // A file on disk always wins, and names work in any folder. Unpacking the built-in
             // files into a user's folder would have left outdated copies behind.
             (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
-            (Err(error), _) if error.kind() == ErrorKind::NotFound => {
-                return Err("no such file".to_owned());
-            }
+            (Err(error), None) => match entry::strategy(path) {
+                Some(text) => text.into_bytes().into(),
+                None if error.kind() == ErrorKind::NotFound => {
+                    return Err("no such file".to_owned());
+                }
+                None => return Err(error.to_string()),
+            },
             (Err(error), _) => return Err(error.to_string()),
         };
         read.add(path.to_owned(), Arc::clone(&bytes));

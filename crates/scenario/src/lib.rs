@@ -14,6 +14,7 @@ mod check;
 mod diagnostics;
 mod digest;
 mod draw;
+pub mod entry;
 pub mod fault;
 mod field_value;
 mod files;

@@ -168,7 +168,8 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
         return Err(wrong(OBSERVATION_VERSION, version, expected));
     }
     let action = entry(ACTION).map(|text| {
-        serde_json::from_value::<ActionSpace>(text.as_str().into())
+        serde_json::from_str::<ActionSpace>(text)
+            .or_else(|_| serde_json::from_value(text.as_str().into()))
             .map_err(|error| wrong(ACTION, text, format!("an action space ({error})")))
     });
     let action = agreed(ACTION, "action", action.transpose()?, said.action)?;

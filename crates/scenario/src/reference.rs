@@ -208,12 +208,11 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
     if first.is_empty() && rest.is_empty() {
         return;
     }
-    page.push_str("\n| key | value | meaning |\n|---|---|---|\n");
+    page.push_str("\n| key | | |\n|---|---|---|\n");
     for (key, about) in first.into_iter().chain(rest) {
         let text = description(about);
         let (meaning, described) = text.split_once("Default: ").unwrap_or((&text, ""));
         let default = match about.get("default") {
-            None if is_required(key, about) => "*required*".to_owned(),
             None | Some(Value::Object(_) | Value::Null) => {
                 described.trim_end_matches('.').to_owned()
             }
@@ -229,9 +228,10 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
         } else {
             format!(" ({default})")
         };
+        let bold = if is_required(key, about) { "**" } else { "" };
         let _ = writeln!(
             page,
-            "| `{key}` | {value}{default} | {} |",
+            "| {bold}`{key}`{bold} | {value}{default} | {} |",
             meaning.trim_end()
         );
     }

@@ -167,7 +167,7 @@ impl Setup {
     /// Checks that every role of the strategy applies the policy's choices.
     fn check_helm(&self, strategy: &Strategy) -> Result<(), SetupError> {
         let has_options = self.spaces.action == ActionSpace::Options;
-        let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none() && policy.sets.is_some() == has_options);
+        let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none() && policy.host.is_none() && policy.sets.is_some() == has_options);
         let deaf = strategy.roles.iter().find(|role| {
             !role
                 .behaviours

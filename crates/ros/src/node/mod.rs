@@ -271,8 +271,10 @@ fn drive(
         vehicles: settings.vehicles.clone(),
         wait: settings.wait,
         silence: SILENCE,
-        mind: Some(Box::new(move |_: &Scenario, boat| -> Box<dyn Mind> {
-            Box::new(driver(boat))
+        minds: Some(Box::new(move |_: &Scenario, boats: &[VehicleId]| {
+            let mind =
+                |boat: &VehicleId| -> (_, Box<dyn Mind>) { (*boat, Box::new(driver(*boat))) };
+            boats.iter().map(mind).collect()
         })),
         policy_wait: Duration::ZERO,
         stop: Arc::clone(&shared.ended),
@@ -283,7 +285,7 @@ fn drive(
             AgentNews::Looking { reason } => shared
                 .agent_news
                 .visit(|news| *news = Some(reason.to_owned())),
-            AgentNews::Left { refused } => shared
+            AgentNews::Left { refused, .. } => shared
                 .refusals
                 .visit(|refusals| *refusals = *refusals + refused),
             AgentNews::Joined { .. } => {}

@@ -17,7 +17,7 @@ pub use expression::{Expression, Join, Values};
 pub use fact::{Fact, Kind, Measure};
 pub use parameter::Parameter;
 pub use place::{Boat, Mark, Place};
-pub use policy::{Policy, Proposer};
+pub use policy::{Host, Policy, Proposer};
 pub use task::{
     Attractor, AvoidCollision, AvoidObstacle, BeyondHalt, ConstantHeading, ConstantSpeed, Contacts,
     CutRange, Ellipse, FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion,
@@ -184,6 +184,20 @@ impl Strategy {
         self.roles.iter().flat_map(Program::models)
     }
 
+    /// The competition entries of its programs.
+    pub fn hosts(&self) -> impl Iterator<Item = &Host> {
+        self.roles.iter().filter_map(Program::host)
+    }
+
+    /// The competition entries of its programs, for permission to run them.
+    pub fn hosts_mut(&mut self) -> impl Iterator<Item = &mut Host> {
+        let behaviours = self.roles.iter_mut().flat_map(|role| &mut role.behaviours);
+        behaviours.filter_map(|behaviour| match &mut behaviour.task {
+            Task::Policy(policy) => policy.host.as_mut(),
+            _ => None,
+        })
+    }
+
     /// Whether a person may steer boats with this strategy.
     pub fn is_steered(&self) -> bool {
         self.roles
@@ -203,12 +217,24 @@ impl Program {
             })
     }
 
+    /// The competition entry that decides for its boats, if any.
+    pub fn host(&self) -> Option<&Host> {
+        self.behaviours
+            .iter()
+            .find_map(|behaviour| match &behaviour.task {
+                Task::Policy(policy) => policy.host.as_ref(),
+                _ => None,
+            })
+    }
+
     /// The accepted external source of courses and speeds, if any.
     pub fn proposer(&self) -> Option<Proposer> {
         self.behaviours
             .iter()
             .find_map(|behaviour| match &behaviour.task {
-                Task::Policy(policy) if policy.model.is_none() && policy.sets.is_none() => {
+                Task::Policy(policy)
+                    if policy.model.is_none() && policy.host.is_none() && policy.sets.is_none() =>
+                {
                     Some(policy.by)
                 }
                 _ => None,

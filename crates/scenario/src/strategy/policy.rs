@@ -1,7 +1,7 @@
 //! The behaviour of the kind `policy` and its keys; [`super::task`] has the other kinds.
 
 use super::Parameter;
-use crate::action::ActionSpace;
+use crate::action::ActionKey;
 use crate::observation::ObservationSpace;
 use crate::policy::PolicyModel;
 use schemars::JsonSchema;
@@ -14,6 +14,10 @@ pub struct Policy {
     #[serde(default)]
     #[schemars(flatten, with = "ModelKeys")]
     pub model: Option<PolicyModel>,
+    /// The competition entry that decides in place of a model.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub host: Option<Host>,
     /// Variable that the chosen option sets; the policy then proposes no course or speed.
     #[serde(default)]
     #[schemars(with = "Option<String>", extend("x-expected" = "the name of a variable with texts"))]
@@ -43,20 +47,49 @@ pub struct Policy {
     pub course_share: Parameter,
 }
 
-/// The keys for a model.
+/// The keys for a model or a competition entry.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "only the schema is used")]
 struct ModelKeys {
     /// ONNX file. Default: an external source proposes.
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a file"))]
     model: Option<String>,
-    /// The model's inputs. Default: as in its metadata.
+    /// Competition entry in place of a model: its folder or `solution.py`.
+    #[schemars(extend("minLength" = 1, "x-expected" = "the path of a folder"))]
+    host: Option<String>,
+    /// Python that runs the entry. Default: python3.
+    #[schemars(length(min = 1))]
+    python: Option<String>,
+    /// Wall-clock limit of an entry's decision, s. Default: 1.
+    #[schemars(range(min = 0.01, max = 60))]
+    limit_s: Option<f64>,
+    /// The model's inputs. Default: as in its metadata; for an entry, the game's.
     observation: Option<ObservationSpace>,
-    /// The model's actions. Default: as in its metadata.
-    action: Option<ActionSpace>,
-    /// Time between the model's decisions, s. Default: as in its metadata.
+    /// The model's actions: a name, or a table of [share of the top speed, turn in degrees clockwise].
+    /// Default: as in its metadata.
+    action: Option<ActionKey>,
+    /// Time between decisions, s. Default: as in the metadata; for an entry, the game's.
     #[schemars(range(min = 0.01, max = 10))]
     period_s: Option<f64>,
+}
+
+/// A competition entry: a Python program that decides for boats.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Host {
+    /// Its folder, or its `solution.py`.
+    pub path: String,
+    /// The Python that runs it.
+    pub python: String,
+    /// Wall-clock time for each decision, s.
+    pub limit_s: f64,
+    /// Its observations, of Pyquaticus in 2025 or 2026. `None`: those of the game's year.
+    pub observation: Option<ObservationSpace>,
+    /// Time between decisions, s. `None`: the game's.
+    pub period_s: Option<f64>,
+    /// Whether this process may run it. A path from another process or a recording never makes this
+    /// one run a program.
+    #[serde(skip)]
+    pub is_allowed: bool,
 }
 
 /// Source of proposals without a model.

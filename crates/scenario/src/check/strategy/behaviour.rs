@@ -6,11 +6,12 @@ use super::variable::set;
 use crate::Kind;
 use crate::action::ActionSpace;
 use crate::guess::listed;
+use crate::observation::ObservationSpace;
 use crate::policy::{self, PartialSpec, PolicyModel};
 use crate::raw;
 use crate::schema::declared;
 use crate::strategy::{
-    Behaviour, Boat, Kind as VariableKind, Mode, Moment, Named, Parameter, Place, Post, Task,
+    Behaviour, Boat, Host, Kind as VariableKind, Mode, Moment, Named, Parameter, Place, Post, Task,
     Variable,
 };
 use primitives::frame::Ned;
@@ -65,7 +66,12 @@ fn one(scope: &Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> O
     } else {
         None
     };
-    let model = if is_policy {
+    let host = if is_policy {
+        host(scope, &path, &mut keys, sets)?
+    } else {
+        None
+    };
+    let model = if is_policy && host.is_none() {
         model(scope, &path, &mut keys, sets)?
     } else {
         None
@@ -76,15 +82,15 @@ fn one(scope: &Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> O
         return scope.refuse(&format!("{path}.sampled"), expected);
     }
     let is_direct = keys.get("direct") == Some(&json!(true));
-    if is_direct && (model.is_none() || sets.is_some()) {
-        let expected = "is true, expected a model that chooses courses and speeds";
+    if is_direct && (model.is_none() && host.is_none() || sets.is_some()) {
+        let expected = "is true, expected a model or an entry that chooses courses and speeds";
         return scope.refuse(&format!("{path}.direct"), expected);
     }
     let weight = parameter(&keys, "weight")?;
     let duration_s = parameter(&keys, "duration_s");
     let mut task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
     if let Task::Policy(policy) = &mut task {
-        (policy.model, policy.sets) = (model, sets);
+        (policy.model, policy.host, policy.sets) = (model, host, sets);
     }
     Some(Behaviour {
         name: name.to_owned(),
@@ -233,6 +239,58 @@ fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<S
         );
         format!("its options are {found}, expected {expected}")
     })
+}
+
+/// The competition entry that a policy refers to, if any.
+fn host(
+    scope: &Scope<'_>,
+    path: &str,
+    keys: &mut Map<String, Json>,
+    sets: Option<u16>,
+) -> Option<Option<Host>> {
+    let [host, python, limit_s] = ["host", "python", "limit_s"].map(|key| keys.remove(key));
+    let given = |keys: &[&str]| {
+        let mut keys = keys.iter();
+        let found = keys.find(|key| scope.document.has(&format!("{path}.{key}")));
+        found.map(|key| format!("{path}.{key}"))
+    };
+    let Some(Json::String(host)) = host else {
+        return given(&["python", "limit_s"]).map_or(Some(None), |key| {
+            scope.refuse(&key, "is given without host, expected only with it")
+        });
+    };
+    let others = given(&["model", "action", "by"]);
+    if let Some(key) = others.or_else(|| sets.and_then(|_| given(&["sets"]))) {
+        return scope.refuse(&key, "is given with host, expected one of them");
+    }
+    let observation = keys.remove("observation");
+    let observation = observation.and_then(|space| serde_json::from_value(space).ok());
+    let known = [
+        ObservationSpace::Pyquaticus,
+        ObservationSpace::Pyquaticus2026,
+    ];
+    if observation.is_some_and(|space| !known.contains(&space)) {
+        let expected = "is of another kind, expected pyquaticus or pyquaticus_2026 for an entry";
+        return scope.refuse(&format!("{path}.observation"), expected);
+    }
+    let found = scope.document.resolve(&format!("{path}.host"), &host);
+    let files = &scope.document.loader.files;
+    // Stored texts are another process's, whose paths this one must not run.
+    let is_allowed = !files.is_stored();
+    if is_allowed && !found.join("solution.py").is_file() && !found.is_file() {
+        let expected = "expected a folder with solution.py, or that file";
+        return scope.refuse(&format!("{path}.host"), &format!("is {host:?}, {expected}"));
+    }
+    Some(Some(Host {
+        path: found.display().to_string(),
+        python: python.map_or("python3".to_owned(), |name| {
+            name.as_str().unwrap_or_default().to_owned()
+        }),
+        limit_s: limit_s.and_then(|limit| limit.as_f64()).unwrap_or(1.0),
+        observation,
+        period_s: keys.remove("period_s").and_then(|period| period.as_f64()),
+        is_allowed,
+    }))
 }
 
 /// The model that a policy refers to, if any.
