@@ -27,6 +27,7 @@ pub use pilot::{Pilot, Spaces};
 pub use runner::MindRunner;
 pub use scenario::action::{Action, ActionSpace, SetPoint};
 pub use scenario::observation::ObservationSpace;
+pub use situation::TeamView;
 pub use turning_circle::warnings;
 
 use host::{Entries, HostMind};

@@ -1,10 +1,12 @@
 //! A mind: the decision-maker of one boat.
 
+use crate::situation::TeamView;
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::SimTime;
 use scenario::strategy::Proposer;
 use std::any::Any;
+use std::sync::Arc;
 
 /// The decision-maker of one boat.
 ///
@@ -15,6 +17,17 @@ use std::any::Any;
 pub trait Mind: Any + Send {
     /// Decides on the newest picture.
     fn decide(&mut self, picture: &Picture) -> Order;
+
+    /// Like [`Mind::decide`], with the same order. `view` is the team's view of the picture, if
+    /// known, for a mind that would otherwise work it out.
+    fn decide_in_team(&mut self, picture: &Picture, _view: Option<&Arc<TeamView>>) -> Order {
+        self.decide(picture)
+    }
+
+    /// The present view of its team, if the mind uses one.
+    fn team_view(&self) -> Option<TeamView> {
+        None
+    }
 
     /// Whether the boat ever sends messages to its team; only then does it receive those of its
     /// mates.

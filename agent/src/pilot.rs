@@ -268,7 +268,7 @@ impl Mind for Pilot {
                 return order;
             }
         };
-        if !situation.update(picture) {
+        if !situation.update(picture, None) {
             return Order::Hold;
         }
         if !situation.own.tagged {

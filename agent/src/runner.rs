@@ -5,8 +5,10 @@
 //! loop, so a game has the same bytes in each of them.
 
 use crate::mind::{Mind, Proposal};
+use crate::situation::TeamView;
 use messages::{Message, Order, Orders, Picture, PolicyProposal, Stamp, VehicleOrder, Word};
 use primitives::VehicleId;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A boat, its mind, and its last order.
 struct Boat<M: ?Sized> {
@@ -16,21 +18,62 @@ struct Boat<M: ?Sized> {
 }
 
 impl<M: Mind + ?Sized> Boat<M> {
-    fn decide(&mut self, picture: Option<&Picture>) {
-        let order = picture.map(|picture| self.mind.decide(picture));
+    fn decide(&mut self, picture: Option<&Picture>, teams: &[Team]) {
+        let order = picture.map(|picture| {
+            let team = teams.iter().find(|team| team.has(picture));
+            self.mind
+                .decide_in_team(picture, team.map(|team| &team.view))
+        });
         self.order = order.unwrap_or_default();
     }
 }
 
-fn decide_each<M: Mind + ?Sized>(boats: &mut [(Option<&Picture>, &mut Boat<M>)]) {
-    for (picture, boat) in boats {
-        boat.decide(*picture);
+/// A team with several boats in this process.
+#[derive(Clone)]
+struct Team {
+    view: Arc<TeamView>,
+    /// The view before, whose memory the next one reuses.
+    before: Arc<TeamView>,
+    /// The picture that the view is of, in the present decision, by its place in memory.
+    picture: Option<usize>,
+}
+
+impl Team {
+    fn new(view: TeamView) -> Team {
+        let view = Arc::new(view.shared());
+        Team {
+            before: Arc::clone(&view),
+            view,
+            picture: None,
+        }
+    }
+
+    /// Takes in the team's picture; of several in one decision, the first.
+    fn take_in(&mut self, picture: &Picture) {
+        if self.picture.is_some() || self.view.team().index() != usize::from(picture.team) {
+            return;
+        }
+        self.picture = Some(std::ptr::from_ref(picture).addr());
+        std::mem::swap(&mut self.view, &mut self.before);
+        // Still in use by a mind that has not had a picture since, if any.
+        if Arc::get_mut(&mut self.view).is_none() {
+            self.view = Arc::new(TeamView::clone(&self.before));
+        }
+        if let Some(view) = Arc::get_mut(&mut self.view) {
+            view.remember(&self.before);
+            view.take_in(picture);
+        }
+    }
+
+    fn has(&self, picture: &Picture) -> bool {
+        self.picture == Some(std::ptr::from_ref(picture).addr())
     }
 }
 
 /// The minds of one process.
 pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
     boats: Vec<Boat<M>>,
+    teams: Vec<Team>,
     /// The picture of the last decision.
     decided: Option<Stamp>,
     /// The minds' messages to their teams after the last decision.
@@ -49,8 +92,17 @@ impl<M: Mind + ?Sized> MindRunner<M> {
             order: Order::Hold,
             mind,
         };
+        let boats: Vec<Boat<M>> = minds.into_iter().map(boat).collect();
+        let views = boats.iter().filter_map(|boat| boat.mind.team_view());
+        let mut teams: Vec<Team> = Vec::new();
+        for view in views {
+            if teams.iter().all(|team| team.view.team() != view.team()) {
+                teams.push(Team::new(view));
+            }
+        }
         MindRunner {
-            boats: minds.into_iter().map(boat).collect(),
+            boats,
+            teams,
             decided: None,
             sent: Vec::new(),
             threads: 1,
@@ -134,21 +186,36 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         stamp: Stamp,
         picture_of: impl Fn(VehicleId) -> Option<&'p Picture>,
     ) {
-        if self.threads == 1 || self.boats.len() < MINDS_MIN {
-            for boat in &mut self.boats {
-                boat.decide(picture_of(boat.vehicle));
+        let MindRunner { boats, teams, .. } = self;
+        teams.iter_mut().for_each(|team| team.picture = None);
+        for picture in boats.iter().filter_map(|boat| picture_of(boat.vehicle)) {
+            teams.iter_mut().for_each(|team| team.take_in(picture));
+        }
+        let teams: &[Team] = teams;
+        if self.threads == 1 || boats.len() < MINDS_MIN {
+            for boat in boats {
+                boat.decide(picture_of(boat.vehicle), teams);
             }
         } else {
-            let boats = self.boats.iter_mut();
-            let mut all: Vec<_> = boats.map(|boat| (picture_of(boat.vehicle), boat)).collect();
-            let each = all.len().div_ceil(self.threads);
-            std::thread::scope(|scope| {
-                let mut parts = all.chunks_mut(each);
-                let own = parts.next();
-                for part in parts {
-                    scope.spawn(|| decide_each(part));
+            let mut all: Vec<_> = boats
+                .iter_mut()
+                .map(|boat| (picture_of(boat.vehicle), boat))
+                .collect();
+            // In small parts, as threads get to them: some boats take several times as long as others.
+            let parts = Mutex::new(all.chunks_mut(MINDS_MIN / 2));
+            let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let work = || {
+                while let Some(part) = next() {
+                    for (picture, boat) in part {
+                        boat.decide(*picture, teams);
+                    }
                 }
-                own.into_iter().for_each(decide_each);
+            };
+            std::thread::scope(|scope| {
+                for _ in 1..self.threads {
+                    scope.spawn(work);
+                }
+                work();
             });
         }
         self.decided = Some(stamp);
@@ -215,6 +282,7 @@ impl MindRunner {
         });
         Some(MindRunner {
             boats: boats.collect::<Option<_>>()?,
+            teams: self.teams.clone(),
             decided: self.decided,
             sent: self.sent.clone(),
             threads: self.threads,

@@ -53,8 +53,7 @@ impl HaltingAvoidance {
         let release_m = value(release_m).unwrap_or(3.0 * halt_m);
         let release_s = value(release_s);
         let distances = situation
-            .others
-            .iter()
+            .others()
             .map(|other| situation.at.distance(other.at));
         // All boats, including those that `contacts` excludes: the halt is about hulls, not tags.
         let nearest_m = distances.fold(f64::INFINITY, f64::min);

@@ -12,8 +12,7 @@ impl BehaviourLogic for MaxSpeed {
         let always = self.range_m.value(situation) <= 0.0;
         if always
             || situation
-                .others
-                .iter()
+                .others()
                 .any(|other| is_near(self, situation, other))
         {
             let peak_width = self.speed_m_s.value(situation);

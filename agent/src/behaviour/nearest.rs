@@ -9,29 +9,36 @@ const TAG_FORESIGHT_S: f64 = 5.0;
 /// The nearest few, without heap allocation; no behaviour responds to more.
 #[derive(Clone)]
 pub(super) struct Nearest {
-    /// Distance, m, and index; nearest first, ties by insertion order.
+    /// Distance, m, and index; nearest first, then lowest index.
     entries: [(f64, usize); NEAREST_MAX],
     count: usize,
 }
 
-impl Nearest {
-    pub(super) fn of(those: impl Iterator<Item = (f64, usize)>) -> Nearest {
-        let mut nearest = Nearest {
+impl Default for Nearest {
+    fn default() -> Nearest {
+        Nearest {
             entries: [(f64::INFINITY, 0); NEAREST_MAX],
             count: 0,
-        };
-        for entry in those {
-            let place =
-                nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
-            // At most sixteen, so that the cost of a decision is bounded for any fleet; the
-            // nearest, so that the order of the list drops none of them.
-            if place < NEAREST_MAX {
-                nearest.count = (nearest.count + 1).min(NEAREST_MAX);
-                nearest.entries[place..nearest.count].rotate_right(1);
-                nearest.entries[place] = entry;
-            }
         }
+    }
+}
+
+impl Nearest {
+    pub(super) fn of(those: impl Iterator<Item = (f64, usize)>) -> Nearest {
+        let mut nearest = Nearest::default();
+        those.for_each(|entry| nearest.add(entry));
         nearest
+    }
+
+    pub(super) fn add(&mut self, entry: (f64, usize)) {
+        let place = self.entries[..self.count].partition_point(|known| *known <= entry);
+        // At most sixteen, so that the cost of a decision is bounded for any fleet; the nearest, so
+        // that the order of the list drops none of them.
+        if place < NEAREST_MAX {
+            self.count = (self.count + 1).min(NEAREST_MAX);
+            self.entries[place..self.count].rotate_right(1);
+            self.entries[place] = entry;
+        }
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = (f64, usize)> {

@@ -12,7 +12,7 @@ mod steadiness;
 use crate::behaviour::{BehaviourLogic, BehaviourOutput, Functions, WeightedFunction, logic_of};
 use crate::ivp::{Choice, Decision, Grid, Preference};
 use crate::mind::{Mind, Proposal};
-use crate::situation::Situation;
+use crate::situation::{Situation, TeamView};
 use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::VehicleId;
@@ -319,8 +319,16 @@ impl HelmMind {
 
 impl Mind for HelmMind {
     fn decide(&mut self, picture: &Picture) -> Order {
+        self.decide_in_team(picture, None)
+    }
+
+    fn team_view(&self) -> Option<TeamView> {
+        Some(TeamView::clone(&self.situation.view))
+    }
+
+    fn decide_in_team(&mut self, picture: &Picture, view: Option<&Arc<TeamView>>) -> Order {
         self.restart_if_back(picture);
-        if !self.situation.update(picture) {
+        if !self.situation.update(picture, view) {
             self.decided = Decided::Hold("the picture does not show this boat");
             self.situation.motion.hold();
             self.functions.clear();

@@ -180,7 +180,8 @@ pub(super) struct Cells {
     pub(super) sector_courses: usize,
     /// Number of sectors along the speeds.
     pub(super) sector_speeds: usize,
-    /// Groups of sectors, courses varying fastest.
+    /// Groups of sectors, speeds varying fastest: a group that leads away from the best courses is
+    /// excluded as a whole.
     pub(super) sectors: Vec<(CourseSpans, SpeedSpans)>,
     /// For the tiles of a sector, by its index along the courses; courses vary fastest.
     pub(super) tile_courses: Vec<CourseSpans>,
@@ -201,8 +202,8 @@ impl Cells {
         let chunks = (sector_courses * sector_speeds).div_ceil(LANES);
         let sectors = |chunk: usize| {
             let number = move |i: usize| LANES * chunk + i;
-            let courses = sector.courses(grid, |i| number(i) % sector_courses);
-            (courses, sector.speeds(grid, |i| number(i) / sector_courses))
+            let courses = sector.courses(grid, |i| number(i) / sector_speeds);
+            (courses, sector.speeds(grid, |i| number(i) % sector_speeds))
         };
         let direction = |tile: usize, i: usize| {
             grid.direction((SIDE * tile + i / SIDE).min(grid.courses() - 1))
@@ -300,9 +301,9 @@ mod tests {
                 let least_m = ready.least(&ways);
                 let most_m = ready.most(&ways);
                 if ready.seek {
-                    (ready.worth_near(least_m), ready.worth_near(most_m))
+                    (ready.worth(least_m), ready.worth(most_m))
                 } else {
-                    (ready.worth_far(most_m), ready.worth_far(least_m))
+                    (ready.worth(most_m), ready.worth(least_m))
                 }
             }
             Field::Closing(ready) => (ready.bound(cell), 0.0),
@@ -325,7 +326,7 @@ mod tests {
             for (k, j) in grid.points() {
                 let across = k / LANES;
                 let along = j / LANES;
-                let sector = along * cells.sector_courses + across;
+                let sector = across * cells.sector_speeds + along;
                 let (of_courses, of_speeds) = &cells.sectors[sector / LANES];
                 let tile = SIDE * (j / SIDE % SIDE) + k / SIDE % SIDE;
                 let (north, east) = grid.direction(k);

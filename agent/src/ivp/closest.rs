@@ -96,6 +96,7 @@ impl Closest {
             Approach::Avoid { at_min, leave_to } => (at_min, leave_to),
             Approach::Seek => (0.0, None),
         };
+        let seek = self.approach == Approach::Seek;
         let lag = self.lag.as_ref();
         let vectors = [self.offset, self.velocity].map(|v| [v.north, v.east]);
         let limits = [self.horizon_s, self.min_m, self.max_m, self.touch_m, at_min];
@@ -155,11 +156,15 @@ impl Closest {
             speed: contact_m_s as f32 * (1.0 + ROUNDING as f32),
             horizon: self.horizon_s as f32,
             min: self.min_m as f32,
-            slope: slope(100.0 - at_min, width_m) as f32,
-            touch: self.touch_m as f32,
-            inner_slope: slope(at_min, self.min_m - self.touch_m) as f32,
-            at_min: at_min as f32,
-            seek: self.approach == Approach::Seek,
+            worth: if seek {
+                // Full utility up to the least distance.
+                [100.0, -slope(100.0, width_m), f64::MIN, 1.0]
+            } else {
+                let inner = slope(at_min, self.min_m - self.touch_m);
+                [at_min, slope(100.0 - at_min, width_m), self.touch_m, inner]
+            }
+            .map(|part| part as f32),
+            seek,
             turning: Turning::new(lag),
             mean_speed: MeanSpeed::new(lag, meeting_s),
             beside,
@@ -185,12 +190,9 @@ pub(super) struct Ready {
     speed: f32,
     horizon: f32,
     min: f32,
-    /// Utility per metre beyond the least distance.
-    slope: f32,
-    touch: f32,
-    /// Utility per metre below the least distance.
-    inner_slope: f32,
-    at_min: f32,
+    /// The utility at the least distance; per metre beyond it; the distance at which they touch, m;
+    /// and the utility per metre between these two.
+    worth: [f32; 4],
     /// Whether to approach.
     pub(super) seek: bool,
     /// Own ship's turn.
@@ -234,12 +236,7 @@ impl Ready {
         let course = (north, east);
         // Reports and tests use the same arithmetic as the search, lane by lane, so the displayed
         // value is the one that decided.
-        let distance = self.distance(&self.turning.to(course), course, speed);
-        if self.seek {
-            self.worth_near(distance)
-        } else {
-            self.worth_far(distance)
-        }
+        self.worth(self.distance(&self.turning.to(course), course, speed))
     }
 
     /// Whether another function has the same distances.
@@ -368,22 +365,13 @@ impl Ready {
         )
     }
 
-    /// Utility of a distance to a contact to approach.
+    /// Utility of a distance, without a branch between approaching and avoiding.
     #[inline(always)]
-    pub(super) fn worth_near(&self, distance: f32) -> f32 {
-        let rise = (distance - self.min) * self.slope;
-        smaller(larger(100.0 - rise, 0.0), 100.0)
-    }
-
-    /// Utility of a distance to a contact to avoid.
-    #[inline(always)]
-    pub(super) fn worth_far(&self, distance: f32) -> f32 {
-        let rise = (distance - self.min) * self.slope;
-        let inside = smaller(
-            larger((distance - self.touch) * self.inner_slope, 0.0),
-            self.at_min,
-        );
-        let outside = smaller(self.at_min + rise, 100.0);
+    pub(super) fn worth(&self, distance: f32) -> f32 {
+        let [at_min, slope, touch, inner_slope] = self.worth;
+        let rise = (distance - self.min) * slope;
+        let inside = smaller(larger((distance - touch) * inner_slope, 0.0), at_min);
+        let outside = smaller(larger(at_min + rise, 0.0), 100.0);
         if distance > self.min { outside } else { inside }
     }
 }

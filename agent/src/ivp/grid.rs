@@ -80,6 +80,12 @@ impl Grid {
         }
     }
 
+    /// Whether another grid has the same points.
+    pub(super) fn is_same(&self, other: &Grid) -> bool {
+        let size = |grid: &Grid| (grid.courses, grid.speeds, grid.speed_max_m_s);
+        size(self) == size(other)
+    }
+
     /// The number of courses.
     pub fn courses(&self) -> usize {
         self.courses

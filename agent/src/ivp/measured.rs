@@ -83,7 +83,9 @@ impl<'a> Distances<'a> {
 
 /// Bounds of contact distances over a group of cells. Caches the last result.
 pub(super) struct Bounded<'a> {
+    /// The formula whose turns are known, and the group of the last result.
     known: Option<&'a Ready>,
+    group: Option<usize>,
     first: Turns,
     last: Turns,
     off: Lanes<f32>,
@@ -101,6 +103,7 @@ impl<'a> Bounded<'a> {
         let last = Turns::new();
         Bounded {
             known: None,
+            group: None,
             first,
             last,
             off: zeros,
@@ -110,15 +113,27 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// Computes both bounds.
+    /// Computes the lower bound, whatever its utility.
     #[inline(always)]
-    pub(super) fn measure(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
+    pub(super) fn measure_least(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
         if self.turn(ready, cells) {
             for i in 0..LANES {
-                let ways = ready.ways(&self.fan(i), &cell(cells.0, cells.1, i));
-                (self.least.0[i], self.most.0[i]) = (ready.least(&ways), ready.most(&ways));
+                self.least.0[i] =
+                    ready.least(&ready.ways(&self.fan(i), &cell(cells.0, cells.1, i)));
             }
         }
+    }
+
+    /// The bound with the greatest utility, once computed.
+    #[inline(always)]
+    pub(super) fn best(&self, ready: &Ready) -> &Lanes<f32> {
+        if ready.seek { &self.least } else { &self.most }
+    }
+
+    /// Forgets the last result, but not the turns, for another kind of bound.
+    #[inline(always)]
+    pub(super) fn forget(&mut self) {
+        self.group = None;
     }
 
     /// Computes the bound with the greatest utility.
@@ -142,7 +157,7 @@ impl<'a> Bounded<'a> {
     /// Computes the turns unless cached. Returns whether there is anything to measure.
     #[inline(always)]
     fn turn(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) -> bool {
-        if self.known.is_some_and(|known| ready.group == known.group) {
+        if self.group.replace(ready.group) == Some(ready.group) {
             return false;
         }
         let turning = ready.turning;

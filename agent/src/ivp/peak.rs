@@ -2,6 +2,7 @@
 
 use super::fixed;
 use super::grid::Grid;
+use super::lanes::LANES;
 
 /// One peak: highest at the summit, sloping gently to the edges of the peak, and from there to
 /// zero.
@@ -72,8 +73,12 @@ impl Peak {
     /// Utility at this distance from the summit; 0 for a non-finite distance.
     #[inline(always)]
     pub(super) fn at(&self, distance: f64) -> f32 {
+        self.at_with(distance, self.peak_width > 0.0)
+    }
+
+    #[inline(always)]
+    fn at_with(&self, distance: f64, has_width: bool) -> f32 {
         let distance = distance.abs();
-        let has_width = self.peak_width > 0.0;
         let delta = if has_width { self.summit_delta } else { 0.0 };
         // All cases are computed without branches, so that this vectorises.
         let within = if has_width {
@@ -110,10 +115,30 @@ pub(super) struct CoursePeak {
 }
 
 impl CoursePeak {
+    /// Whether any of [`LANES`] courses from `first` on may have any utility.
+    pub(super) fn may_reach(&self, grid: &Grid, first: usize) -> bool {
+        let middle = (first + LANES / 2).min(grid.courses() - 1);
+        let from_middle = grid.ticks_between(self.summit, middle).abs() * self.tick_rad;
+        let to_ends =
+            grid.circle() / grid.courses() as f64 * self.tick_rad * (LANES / 2 + 1) as f64;
+        // Not for a summit that is not a number: the comparison is then false, as is every utility.
+        from_middle - to_ends < self.peak.peak_width + self.peak.base_width.max(0.0)
+    }
+
     /// Utility of course `k`.
     #[inline(always)]
     pub(super) fn at(&self, grid: &Grid, k: usize) -> f32 {
-        self.peak
-            .at(grid.ticks_between(self.summit, k) * self.tick_rad)
+        self.at_with(grid, k, self.has_width())
+    }
+
+    pub(super) fn has_width(&self) -> bool {
+        self.peak.peak_width > 0.0
+    }
+
+    /// The same for a peak known to have a width or none.
+    #[inline(always)]
+    pub(super) fn at_with(&self, grid: &Grid, k: usize, has_width: bool) -> f32 {
+        let distance = grid.ticks_between(self.summit, k) * self.tick_rad;
+        self.peak.at_with(distance, has_width)
     }
 }

@@ -7,6 +7,7 @@ use super::objective::Objective;
 use super::search::{Bounds, Present, Search};
 use super::sums::Sums;
 use primitives::instructions::Instructions;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// A point of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,14 +38,41 @@ pub struct Choice {
     pub evaluated: usize,
 }
 
+/// A grid and its cells: the same for all problems on equal grids, so that those of a large fleet
+/// stay in the processor's cache.
+#[derive(Debug)]
+struct Layout {
+    grid: Grid,
+    cells: Cells,
+    /// For the next searches; as many as have run at once.
+    spare: Mutex<Vec<Bounds>>,
+}
+
+static LAYOUTS: Mutex<Vec<Weak<Layout>>> = Mutex::new(Vec::new());
+
+impl Layout {
+    fn of(grid: Grid) -> Arc<Layout> {
+        let mut known = LAYOUTS.lock().unwrap_or_else(PoisonError::into_inner);
+        known.retain(|layout| layout.strong_count() > 0);
+        let mut in_use = known.iter().filter_map(Weak::upgrade);
+        in_use
+            .find(|layout| layout.grid.is_same(&grid))
+            .unwrap_or_else(|| {
+                let cells = Cells::new(&grid);
+                let spare = Mutex::default();
+                let new = Arc::new(Layout { grid, cells, spare });
+                known.push(Arc::downgrade(&new));
+                new
+            })
+    }
+}
+
 /// The functions of one decision, prepared for summation. Its lists are reused for the next one.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    grid: Grid,
-    cells: Cells,
+    layout: Arc<Layout>,
     instructions: Instructions,
     sums: Sums,
-    bounds: Bounds,
     functions: usize,
     /// Whether any function distinguishes courses.
     pub decides_course: bool,
@@ -63,28 +91,26 @@ impl Problem {
     /// A problem on this grid, without functions, for this instruction set, which affects only the
     /// speed.
     pub fn with_instructions(grid: Grid, instructions: Instructions) -> Problem {
-        let cells = Cells::new(&grid);
+        let layout = Layout::of(grid);
         Problem {
-            bounds: Bounds::new(&cells),
-            sums: Sums::new(&grid),
-            cells,
+            sums: Sums::new(&layout.grid),
             instructions,
             functions: 0,
             decides_course: false,
             decides_speed: false,
             found: None,
-            grid,
+            layout,
         }
     }
 
     /// The grid.
     pub fn grid(&self) -> &Grid {
-        &self.grid
+        &self.layout.grid
     }
 
     /// Removes all functions.
     pub fn clear(&mut self) {
-        self.sums.clear(&self.grid);
+        self.sums.clear(&self.layout.grid);
         self.functions = 0;
         self.decides_course = false;
         self.decides_speed = false;
@@ -109,7 +135,7 @@ impl Problem {
         self.decides_course |= objective.decides_course();
         self.decides_speed |= objective.decides_speed();
         self.sums
-            .add(&self.grid, self.instructions, weight, objective);
+            .add(&self.layout.grid, self.instructions, weight, objective);
     }
 
     /// The number of functions.
@@ -127,13 +153,17 @@ impl Problem {
     /// Ties go to the course with the smallest angle from the present one, then to starboard; on
     /// that course to the speed nearest to the present one, then to the lower.
     pub fn solve(&mut self, preference: Preference) -> Choice {
+        let Layout { grid, cells, spare } = &*self.layout;
+        let spare = || spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let bounds = spare().pop();
+        let mut bounds = bounds.unwrap_or_else(|| Bounds::new(cells));
         let search = Search {
-            grid: &self.grid,
-            cells: &self.cells,
+            grid,
+            cells,
             sums: &self.sums,
-            bounds: &mut self.bounds,
+            bounds: &mut bounds,
             present: Present {
-                course: self.grid.ticks_of(preference.course_rad),
+                course: grid.ticks_of(preference.course_rad),
                 speed_m_s: preference.speed_m_s,
             },
             // A good first guess lets most cells be skipped at once. It changes how many points are
@@ -141,6 +171,7 @@ impl Problem {
             guess: self.found,
         };
         let (best, evaluated) = self.instructions.run(search);
+        spare().push(bounds);
         self.found = Some(best.decision);
         Choice {
             decision: best.decision,

@@ -39,8 +39,10 @@ pub(super) struct Bounds {
     /// The upper bound of each sector, in quanta.
     sectors: Vec<Lanes<i32>>,
     /// By group of sectors and by formula: a bit for each sector in which the formula has full
-    /// utility.
+    /// utility. Undefined for groups without a sector that reaches the best point so far.
     clear: Vec<u16>,
+    /// By formula: its upper bounds in the tiles of the present sector, in quanta.
+    parts: Vec<Lanes<i32>>,
 }
 
 impl Bounds {
@@ -51,6 +53,7 @@ impl Bounds {
             lists: vec![Lanes::splat(DONE); sectors],
             sectors: vec![Lanes::splat(DONE); chunks],
             clear: Vec::with_capacity(chunks * FUNCTIONS_MAX / 8),
+            parts: Vec::with_capacity(FUNCTIONS_MAX / 8),
         }
     }
 }
@@ -71,8 +74,8 @@ impl Kernel for Search<'_> {
 
     #[inline(always)]
     fn run(mut self) -> (Best, usize) {
-        self.bound_lists();
-        self.bound_sectors();
+        let formulas = self.sums.fields.len();
+        self.bounds.parts.resize(formulas, Lanes::splat(0));
         // Above the mark of finished places, so that none of them is taken, and below every sum.
         let mut best = Best {
             value: DONE + 1,
@@ -82,21 +85,29 @@ impl Kernel for Search<'_> {
             },
         };
         let mut evaluated = 0;
-        if let Some(Decision { course, speed }) = self.guess {
-            self.evaluate((course / SIDE, speed / SIDE), &mut best);
+        // First, so that its value excludes most sectors after a few formulas.
+        let guess = self.guess;
+        let guess = guess.map(|Decision { course, speed }| (course / SIDE, speed / SIDE));
+        if let Some(tile) = guess {
+            for (part, (weight, _)) in self.bounds.parts.iter_mut().zip(&self.sums.fields) {
+                *part = Lanes::splat(weight.quanta(100.0));
+            }
+            self.evaluate(tile, (None, 0), &mut best);
             evaluated += LANES;
         }
+        self.bound_lists();
+        self.bound_sectors(best.value);
         // Most promising first.
         while let Some(sector) = take_most(&mut self.bounds.sectors, best.value) {
-            let across = sector % self.cells.sector_courses;
-            let along = sector / self.cells.sector_courses;
-            let mut tiles = [self.tiles(sector)];
+            let across = sector / self.cells.sector_speeds;
+            let along = sector % self.cells.sector_speeds;
+            let mut tiles = [self.tiles(sector, best.value)];
             while let Some(tile) = take_most(&mut tiles, best.value) {
-                self.evaluate(
-                    (SIDE * across + tile % SIDE, SIDE * along + tile / SIDE),
-                    &mut best,
-                );
-                evaluated += LANES;
+                let at = (SIDE * across + tile % SIDE, SIDE * along + tile / SIDE);
+                if Some(at) != guess {
+                    self.evaluate(at, (Some(sector), tile), &mut best);
+                    evaluated += LANES;
+                }
             }
         }
         (best, evaluated)
@@ -132,22 +143,23 @@ impl Search<'_> {
     /// Computes the upper bounds of lists and tables.
     #[inline(always)]
     fn bound_lists(&mut self) {
-        let courses = self.sums.courses.len();
-        for along in 0..self.sums.speeds.len() {
-            for across in 0..courses {
-                self.bounds.lists[along * courses + across] =
-                    self.sums.most_in_lists(across, along);
+        let speeds = self.cells.sector_speeds;
+        for (across, sectors) in self.bounds.lists.chunks_mut(speeds).enumerate() {
+            for (along, tiles) in sectors.iter_mut().enumerate() {
+                *tiles = self.sums.most_in_lists(across, along);
             }
         }
     }
 
-    /// Computes the upper bounds of sectors, and the formulas with full utility in them.
+    /// Computes the upper bounds of sectors that reach `least`, and the formulas with full utility
+    /// in them.
     #[inline(always)]
-    fn bound_sectors(&mut self) {
+    fn bound_sectors(&mut self, least: i32) {
         let Bounds {
             lists,
             sectors,
             clear,
+            ..
         } = &mut *self.bounds;
         let formulas = self.sums.fields.len();
         clear.resize(formulas * sectors.len(), 0);
@@ -157,41 +169,59 @@ impl Search<'_> {
             for (sum, tiles) in sums.0.iter_mut().zip(&lists[LANES * chunk..]) {
                 *sum = tiles.most();
             }
-            *bounds =
-                self.sums
-                    .bound_sectors(sums, cells, &mut clear[formulas * chunk..][..formulas]);
+            let clear = &mut clear[formulas * chunk..][..formulas];
+            *bounds = self.sums.bound_sectors(sums, cells, clear, least);
         }
     }
 
     /// The formulas with full utility in a sector.
     #[inline(always)]
-    fn clear(&self, sector: usize) -> Clear<'_> {
-        let formulas = self.sums.fields.len();
+    fn clear<'b>(bounds: &'b Bounds, formulas: usize, sector: usize) -> Clear<'b> {
         Clear {
-            of_formulas: &self.bounds.clear[formulas * (sector / LANES)..][..formulas],
+            of_formulas: &bounds.clear[formulas * (sector / LANES)..][..formulas],
             sectors: 1 << (sector % LANES),
         }
     }
 
-    /// The upper bounds of a sector's tiles.
+    /// The upper bounds of a sector's tiles that reach `least`.
     #[inline(always)]
-    fn tiles(&self, sector: usize) -> Lanes<i32> {
-        let courses = &self.cells.tile_courses[sector % self.cells.sector_courses];
-        let speeds = &self.cells.tile_speeds[sector / self.cells.sector_courses];
-        self.sums.add_bounds(
-            self.bounds.lists[sector],
-            (courses, speeds),
-            self.clear(sector),
-        )
+    fn tiles(&mut self, sector: usize, least: i32) -> Lanes<i32> {
+        let courses = &self.cells.tile_courses[sector / self.cells.sector_speeds];
+        let speeds = &self.cells.tile_speeds[sector % self.cells.sector_speeds];
+        // Taken out, so that the bounds of the sector can be read while these are written.
+        let mut parts = std::mem::take(&mut self.bounds.parts);
+        let clear = Search::clear(self.bounds, parts.len(), sector);
+        let lists = self.bounds.lists[sector];
+        let tiles = self
+            .sums
+            .add_bounds(lists, (courses, speeds), clear, (&mut parts, least));
+        self.bounds.parts = parts;
+        tiles
     }
 
-    /// Evaluates a tile. Keeps its best point if that beats the best so far.
+    /// Evaluates a tile, by its place in the present sector if there is one. Keeps its best point if
+    /// that beats the best so far.
     #[inline(always)]
-    fn evaluate(&self, (course_tile, speed_tile): (usize, usize), best: &mut Best) {
-        let sector = speed_tile / SIDE * self.cells.sector_courses + course_tile / SIDE;
-        let sums = self
-            .sums
-            .tile(self.cells, (course_tile, speed_tile), self.clear(sector));
+    fn evaluate(
+        &self,
+        (course_tile, speed_tile): (usize, usize),
+        (sector, place): (Option<usize>, usize),
+        best: &mut Best,
+    ) {
+        let parts = &self.bounds.parts;
+        let none = Clear {
+            of_formulas: &[],
+            sectors: 0,
+        };
+        let clear = sector.map_or(none, |sector| {
+            Search::clear(self.bounds, parts.len(), sector)
+        });
+        let sums = self.sums.tile(
+            self.cells,
+            (course_tile, speed_tile),
+            clear,
+            (parts, place, best.value),
+        );
         let value = sums.most();
         // Most tiles end here, after one comparison; only equal or better ones are checked point by
         // point.
@@ -270,32 +300,34 @@ impl Sums {
         tiles
     }
 
-    /// Adds the formulas' bounds to the tiles' sums. Formulas in `clear` add their full utility.
+    /// Adds the formulas' bounds to the tiles' sums, and notes them. Formulas in `clear` add their
+    /// full utility. Stops when no tile can reach `least`.
     #[inline(always)]
     fn add_bounds(
         &self,
         mut sums: Lanes<i32>,
         cells: (&CourseSpans, &SpeedSpans),
         clear: Clear<'_>,
+        (parts, least): (&mut [Lanes<i32>], i32),
     ) -> Lanes<i32> {
         let mut bounded = Bounded::new();
-        for (i, (weight, field)) in self.fields.iter().enumerate() {
+        let mut left = self.full;
+        for (i, ((weight, field), part)) in self.fields.iter().zip(parts).enumerate() {
+            if !reaches(&sums, left, least) {
+                return Lanes::splat(DONE);
+            }
+            left -= weight.quanta(100.0);
+            let before = sums;
             match field {
                 _ if clear.is_so(i) => add_full(&mut sums, *weight),
                 Field::Closest(ready) => {
                     bounded.measure_best(ready, cells);
-                    add_worth(
-                        &mut sums,
-                        *weight,
-                        ready,
-                        if ready.seek {
-                            &bounded.least
-                        } else {
-                            &bounded.most
-                        },
-                    );
+                    add_worth(&mut sums, *weight, ready, bounded.best(ready));
                 }
                 Field::Closing(ready) => add_closing_bounds(&mut sums, *weight, ready, cells),
+            }
+            for i in 0..LANES {
+                part.0[i] = sums.0[i] - before.0[i];
             }
         }
         sums
@@ -309,35 +341,54 @@ impl Sums {
         mut sums: Lanes<i32>,
         cells: (&CourseSpans, &SpeedSpans),
         clear: &mut [u16],
+        least: i32,
     ) -> Lanes<i32> {
         let mut bounded = Bounded::new();
-        // A contact that stays far away in a whole sector adds its full weight there. Most contacts
-        // do, and their points need no distance.
-        for ((weight, field), clear) in self.fields.iter().zip(clear) {
+        let mut left = self.full;
+        for ((weight, field), clear) in self.fields.iter().zip(&mut *clear) {
+            if !reaches(&sums, left, least) {
+                return Lanes::splat(DONE);
+            }
+            left -= weight.quanta(100.0);
             *clear = 0;
             match field {
                 Field::Closest(ready) => {
-                    bounded.measure(ready, cells);
-                    if ready.seek {
-                        add_worth(&mut sums, *weight, ready, &bounded.least);
-                    } else {
-                        add_worth(&mut sums, *weight, ready, &bounded.most);
-                        *clear = clear_bits(ready, &bounded.least);
+                    bounded.measure_best(ready, cells);
+                    add_worth(&mut sums, *weight, ready, bounded.best(ready));
+                    if !ready.seek {
+                        *clear = clear_bits(ready, &bounded.most);
                     }
                 }
                 Field::Closing(ready) => add_closing_bounds(&mut sums, *weight, ready, cells),
             }
         }
+        if !reaches(&sums, 0, least) {
+            return Lanes::splat(DONE);
+        }
+        // A contact that stays far away in a whole sector adds its full weight there. Most contacts
+        // do, and their points need no distance.
+        bounded.forget();
+        for ((_, field), clear) in self.fields.iter().zip(clear) {
+            // So far those in which it may: its greatest utility is full.
+            if let Field::Closest(ready) = field
+                && *clear != 0
+            {
+                bounded.measure_least(ready, cells);
+                *clear &= clear_bits(ready, &bounded.least);
+            }
+        }
         sums
     }
 
-    /// The weighted sums of a tile's points, in quanta.
+    /// The weighted sums of a tile's points, in quanta. Stops when none can reach `least`, by the
+    /// formulas' bounds in this place.
     #[inline(always)]
     fn tile(
         &self,
         cells: &Cells,
         (course_tile, speed_tile): (usize, usize),
         clear: Clear<'_>,
+        (parts, place, least): (&[Lanes<i32>], usize, i32),
     ) -> Lanes<i32> {
         let of_courses = &self.courses[course_tile / SIDE].0[SIDE * (course_tile % SIDE)..][..SIDE];
         let first_speed = SIDE * (speed_tile % SIDE);
@@ -355,7 +406,12 @@ impl Sums {
         let (north, east) = &cells.points[course_tile];
         let speed = &cells.point_speeds[speed_tile];
         let mut measured = Distances::new();
-        for (i, (weight, field)) in self.fields.iter().enumerate() {
+        let mut left: i32 = parts.iter().map(|part| part.0[place]).sum();
+        for (i, ((weight, field), part)) in self.fields.iter().zip(parts).enumerate() {
+            if !reaches(&sums, left, least) {
+                return Lanes::splat(DONE);
+            }
+            left -= part.0[place];
             match field {
                 _ if clear.is_so(i) => add_full(&mut sums, *weight),
                 Field::Closest(ready) => {
@@ -391,8 +447,21 @@ struct Clear<'a> {
 impl Clear<'_> {
     #[inline(always)]
     fn is_so(self, formula: usize) -> bool {
-        self.of_formulas[formula] & self.sectors == self.sectors
+        self.of_formulas
+            .get(formula)
+            .is_some_and(|clear| clear & self.sectors != 0)
     }
+}
+
+/// Whether any sum reaches `least` if up to `left` is added.
+#[inline(always)]
+fn reaches(sums: &Lanes<i32>, left: i32, least: i32) -> bool {
+    let least = least.saturating_sub(left);
+    let mut reaches = false;
+    for i in 0..LANES {
+        reaches |= sums.0[i] >= least;
+    }
+    reaches
 }
 
 /// Adds the utilities of distances.
@@ -403,14 +472,8 @@ fn add_worth(
     ready: &closest::Ready,
     distances: &Lanes<f32>,
 ) {
-    if ready.seek {
-        for i in 0..LANES {
-            sums.0[i] += weight.quanta(ready.worth_near(distances.0[i]));
-        }
-    } else {
-        for i in 0..LANES {
-            sums.0[i] += weight.quanta(ready.worth_far(distances.0[i]));
-        }
+    for i in 0..LANES {
+        sums.0[i] += weight.quanta(ready.worth(distances.0[i]));
     }
 }
 
@@ -431,15 +494,11 @@ fn add_closing_bounds(
 /// distances, m.
 #[inline(always)]
 fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {
-    let mut bits = Lanes::splat(0);
+    let mut bits = 0_u32;
     for i in 0..LANES {
-        bits.0[i] = if ready.worth_far(least.0[i]) >= 100.0 {
-            1 << i
-        } else {
-            0
-        };
+        bits |= u32::from(ready.worth(least.0[i]) >= 100.0) << i;
     }
-    bits.0.iter().fold(0, |all, bit| all | bit) as u16
+    bits as u16
 }
 
 /// Adds a formula at full utility.

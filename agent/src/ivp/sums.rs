@@ -18,6 +18,8 @@ pub(super) struct Sums {
     pub(super) speeds: Vec<Lanes<i32>>,
     /// Formulas in both course and speed.
     pub(super) fields: Vec<(Weight, Field)>,
+    /// The sum of the formulas if all have full utility, in quanta.
+    pub(super) full: i32,
     /// The sum of weighted tables, in quanta: for each group of speeds, a row of speeds per lane of
     /// `courses`. Undefined for groups of courses that no table lowers.
     table: Vec<Lanes<i32>>,
@@ -38,6 +40,7 @@ impl Sums {
             courses,
             speeds,
             fields: Vec::with_capacity(FUNCTIONS_MAX / 8),
+            full: 0,
             table: Vec::new(),
             lowered,
         };
@@ -50,6 +53,7 @@ impl Sums {
         clear_lanes(&mut self.courses, grid.courses());
         clear_lanes(&mut self.speeds, grid.speeds());
         self.fields.clear();
+        self.full = 0;
         self.lowered.fill(false);
     }
 
@@ -101,6 +105,7 @@ impl Sums {
                 }
             }
         }
+        self.full += weight.quanta(100.0);
         self.fields.insert(place, (weight, field));
     }
 
@@ -136,7 +141,14 @@ impl Kernel for AddSeparable<'_> {
         if !of_course.is_zero() {
             let peak = separable.course.on_courses(grid);
             for (i, sums) in sums.courses.iter_mut().enumerate() {
-                add_peak(sums, LANES * i, of_course, &peak, grid);
+                // Most functions have no width, which saves a division for each course.
+                match peak.may_reach(grid, LANES * i) {
+                    true if peak.has_width() => {
+                        add_peak(sums, LANES * i, of_course, (&peak, true), grid);
+                    }
+                    true => add_peak(sums, LANES * i, of_course, (&peak, false), grid),
+                    false => {}
+                }
             }
         }
         if of_speed.is_zero() {
@@ -155,9 +167,15 @@ impl Kernel for AddSeparable<'_> {
 
 /// Adds a weighted peak to a group of courses from `first` on.
 #[inline(always)]
-fn add_peak(sums: &mut Lanes<i32>, first: usize, weight: Weight, peak: &CoursePeak, grid: &Grid) {
+fn add_peak(
+    sums: &mut Lanes<i32>,
+    first: usize,
+    weight: Weight,
+    (peak, has_width): (&CoursePeak, bool),
+    grid: &Grid,
+) {
     for i in 0..LANES {
-        let quanta = weight.quanta(peak.at(grid, first + i));
+        let quanta = weight.quanta(peak.at_with(grid, first + i, has_width));
         sums.0[i] += if first + i < grid.courses() {
             quanta
         } else {

@@ -216,13 +216,16 @@ impl MeanSpeed {
     /// - y^2 / 2` of the largest possible.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
-        let (most, per_most) = if speed > self.ahead {
-            self.gain
-        } else {
-            self.loss
-        };
-        let share = smaller(larger((speed - self.ahead) * per_most, -1.0), 1.0);
-        self.ahead + most * (share * (1.0 - 0.5 * share.abs()))
+        // Both are computed before the choice: a choice between numbers in memory becomes a gather,
+        // which took a third of a search.
+        let (gain, per_gain) = self.gain;
+        let (loss, per_loss) = self.loss;
+        let off = speed - self.ahead;
+        let up = smaller(off * per_gain, 1.0);
+        let down = larger(off * per_loss, -1.0);
+        let up = gain * (up * (1.0 - 0.5 * up));
+        let down = loss * (down * (1.0 + 0.5 * down));
+        self.ahead + if speed > self.ahead { up } else { down }
     }
 }
 

@@ -72,11 +72,7 @@ pub(super) fn write(situation: &Situation, edition: Edition, out: &mut Numbers<'
         }
     }
     for vehicle in model.mates.iter().chain(&model.enemies) {
-        match situation
-            .others
-            .iter()
-            .find(|other| other.vehicle == *vehicle)
-        {
+        match situation.others().find(|other| other.vehicle == *vehicle) {
             Some(other) => other_boat(situation, other, edition, out),
             None => out.skip(edition.other_names().count()),
         }

@@ -42,8 +42,7 @@ pub(super) fn write(
     game(situation, out);
     let others = |is_enemy: bool| {
         situation
-            .others
-            .iter()
+            .others()
             .filter(move |other| other.is_enemy == is_enemy)
     };
     slots(situation, others(false), mates, out);

@@ -4,22 +4,31 @@ use primitives::{FlagId, Ned, TeamId, VehicleId};
 use rules::{Field, Rules};
 use scenario::Scenario;
 use scenario::strategy::Program;
+use std::sync::Arc;
 
 /// The score at which Pyquaticus ends a game by default.
 const PYQUATICUS_SCORE_MAX: f64 = 20.0;
 const HAS_ALL: &str = "a checked field has flags and corners for every team";
 
+/// What all boats of a team know alike before the game begins.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TeamModel {
+    pub(crate) team: TeamId,
+    pub(crate) field: Field,
+    pub(crate) rules: Rules,
+    /// The top speed of every boat of the game, m/s, by vehicle index.
+    pub(crate) boat_speeds_m_s: Vec<f64>,
+}
+
 /// A helm's knowledge before the game begins.
 #[derive(Clone, Debug)]
 pub(crate) struct GameModel {
     pub(crate) me: VehicleId,
-    pub(crate) team: TeamId,
+    pub(super) of_team: Arc<TeamModel>,
     /// The game's seed.
     pub(crate) seed: u64,
     /// The physics' time step, s.
     pub(crate) tick_s: f64,
-    pub(crate) field: Field,
-    pub(crate) rules: Rules,
     /// The boat's index in its team.
     pub(crate) rank: usize,
     /// The enemies, in the scenario's order.
@@ -32,8 +41,6 @@ pub(crate) struct GameModel {
     pub(crate) own_flags: Vec<(FlagId, Ned)>,
     /// The score that ends the game, or Pyquaticus' default.
     pub(crate) score_max: f64,
-    /// The top speed of every boat of the game, m/s, by vehicle index.
-    pub(crate) boat_speeds_m_s: Vec<f64>,
     /// The highest speed of the helm's decisions, m/s.
     pub(crate) speed_max_m_s: f64,
     /// The team's named points, sorted by name.
@@ -77,7 +84,6 @@ impl GameModel {
         let own_m_s = boat_speeds_m_s[me.index()];
         GameModel {
             me,
-            team,
             seed: scenario.seed,
             tick_s: scenario.tick.as_s(),
             rank: of(true).position(|vehicle| vehicle == me).unwrap_or(0),
@@ -86,20 +92,18 @@ impl GameModel {
             targets: flags(false),
             own_flags: flags(true),
             score_max: score_max(scenario),
-            boat_speeds_m_s,
             speed_max_m_s: program
                 .helm
                 .speed_max_m_s
                 .map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
             points,
-            field: field.clone(),
-            rules: scenario.rules.clone(),
+            of_team: Arc::new(TeamModel {
+                team,
+                field: field.clone(),
+                rules: scenario.rules.clone(),
+                boat_speeds_m_s,
+            }),
         }
-    }
-
-    /// The home of the team's flag that is nearest to a place.
-    pub(crate) fn own_flag_near(&self, at: Ned) -> Ned {
-        self.field.nearest_own_flag(self.team, at).expect(HAS_ALL)
     }
 
     /// A named point of the team.
@@ -130,10 +134,25 @@ impl GameModel {
             .untag_centre(&self.field, self.team, at)
             .expect(HAS_ALL)
     }
+}
+
+impl TeamModel {
+    /// The home of the team's flag that is nearest to a place.
+    pub(crate) fn own_flag_near(&self, at: Ned) -> Ned {
+        self.field.nearest_own_flag(self.team, at).expect(HAS_ALL)
+    }
 
     /// Whether `at` is on the team's own side.
     pub(crate) fn is_own_side(&self, at: Ned) -> bool {
         // A point inside both edges, not the corner itself, which lies on the boundary.
         self.field.is_own_side(self.team, at)
+    }
+}
+
+impl std::ops::Deref for GameModel {
+    type Target = TeamModel;
+
+    fn deref(&self) -> &TeamModel {
+        &self.of_team
     }
 }

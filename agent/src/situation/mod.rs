@@ -4,35 +4,30 @@ mod game_model;
 mod interception;
 mod moving_point;
 mod team_messages;
+mod team_view;
 mod turn_estimate;
 
 pub(crate) use interception::meeting_time_s;
 pub(crate) use moving_point::MovingPoint;
+pub use team_view::TeamView;
 
 use crate::mind::Proposal;
 use crate::own_motion::OwnMotion;
 use game_model::GameModel;
 pub(crate) use game_model::score_max;
-use interception::{Interceptor, Intruder, Pair};
+use interception::Pair;
 use messages::Picture;
-use messages::picture::{Contact, OwnBoat};
+use messages::picture::OwnBoat;
 use primitives::frame::{Body, Rotation, ned_from_body};
 use primitives::{FlagId, Ned, SimTime, VehicleId};
-use rules::event::{EventRecord, TagCause};
-use rules::{Ability, Event, TaggedBoat, tag_wait_s};
+use rules::{Ability, TaggedBoat};
 use scenario::Scenario;
 use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use std::cell::OnceCell;
+use std::sync::Arc;
 use team_messages::TeamMessages;
-use turn_estimate::{TurnEstimate, turning_on};
+use turn_estimate::turning_on;
 
-/// A contact is assumed to keep its velocity for this long and then to slow down, s.
-const KEEPS_ON_S: f64 = 15.0;
-/// A contact is assumed to be at rest after this long, s.
-const STILL_AFTER_S: f64 = 30.0;
-/// A boat of the team is dead reckoned after this time without a fix, s: at the usual delays it
-/// moves less than a receiver errs, and to rotate the motion of a whole fleet takes time.
-const LATE_S: f64 = 0.5;
 /// Distance to anything unknown, m.
 const NOWHERE_M: f64 = 1e9;
 /// A boat this far inside its untagging place was tagged there and must leave it, as a fraction of
@@ -51,6 +46,8 @@ pub(crate) struct OtherBoat {
     velocity: Velocity,
     pub(crate) psi_rad: f64,
     yaw_rate_rad_s: f64,
+    /// See [`OtherBoat::turning_on`]; only in a large fleet.
+    turned: Option<MovingPoint>,
     pub(crate) tagged: bool,
     /// Whether power play has put it out of action.
     pub(crate) disabled: bool,
@@ -83,27 +80,6 @@ impl OtherBoat {
             }
         }
     }
-
-    /// Its position and velocity extrapolated through a brief continued turn.
-    pub(crate) fn turning_on(&self) -> MovingPoint {
-        turning_on(
-            MovingPoint {
-                at: self.at,
-                velocity: self.velocity(),
-            },
-            self.yaw_rate_rad_s,
-        )
-    }
-}
-
-/// The way of a boat of the team since its last fix, at the velocity that it had then along its
-/// axes.
-#[derive(Clone, Copy, Debug)]
-struct Track {
-    fix: SimTime,
-    velocity: Body,
-    gone: Ned,
-    until: SimTime,
 }
 
 /// The helm's current knowledge.
@@ -125,17 +101,8 @@ pub(crate) struct Situation {
     pub(crate) velocity: Ned,
     /// The boat's response to orders.
     pub(crate) motion: OwnMotion,
-    /// All other known boats: mates first, then enemies, each in the scenario's order.
-    pub(crate) others: Vec<OtherBoat>,
-    /// Tracks of the team's boats, by vehicle index.
-    tracks: Vec<Option<Track>>,
-    /// Turn estimates of contacts, by vehicle index.
-    turns: Vec<Option<TurnEstimate>>,
-    /// By vehicle index: the earliest time of the next tag of enemies that tagged a boat of the
-    /// team.
-    tag_ready: Vec<SimTime>,
-    /// Boats that power play has put out of action.
-    disabled: Vec<VehicleId>,
+    /// What the whole team knows.
+    pub(crate) view: Arc<TeamView>,
     pub(crate) variables: Vec<f64>,
     pub(crate) team_messages: TeamMessages,
     /// A policy's last proposal.
@@ -145,8 +112,8 @@ pub(crate) struct Situation {
     score: f64,
     enemy_score: f64,
     /// The interception pairs, computed on first use in a decision.
-    interception: OnceCell<Vec<Pair>>,
-    interception_before: Vec<Pair>,
+    interception: OnceCell<Arc<[Pair]>>,
+    interception_before: Arc<[Pair]>,
     /// Whether the boat was tagged inside its untagging place and must leave it before it can come
     /// home.
     leaving: bool,
@@ -165,6 +132,7 @@ impl Situation {
             own: OwnBoat::new(model.me, messages::picture::Nav::default()),
             motion: OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, compensates),
             team_messages: TeamMessages::new(program, &model.mates),
+            view: Arc::new(TeamView::new(Arc::clone(&model.of_team))),
             model,
             now: SimTime::ZERO,
             begun: false,
@@ -174,11 +142,6 @@ impl Situation {
             at: Ned::default(),
             ahead: Ned::default(),
             velocity: Ned::default(),
-            others: Vec::new(),
-            tracks: Vec::new(),
-            turns: Vec::new(),
-            tag_ready: Vec::new(),
-            disabled: Vec::new(),
             variables: program
                 .variables
                 .iter()
@@ -189,25 +152,25 @@ impl Situation {
             score: 0.0,
             enemy_score: 0.0,
             interception: OnceCell::new(),
-            interception_before: Vec::new(),
+            interception_before: Arc::default(),
             leaving: false,
         }
     }
 
     /// Processes the picture for the next decision in advance.
     pub(crate) fn preview(&mut self, picture: &Picture) {
-        self.is_seen = Some(self.apply_picture(picture));
+        self.is_seen = Some(self.apply_picture(picture, None));
     }
 
     /// Processes the newest picture unless a preview has done so. Returns whether it shows the boat
-    /// itself.
-    pub(crate) fn update(&mut self, picture: &Picture) -> bool {
+    /// itself. `view` is the team's view of it, if known.
+    pub(crate) fn update(&mut self, picture: &Picture, view: Option<&Arc<TeamView>>) -> bool {
         self.is_seen
             .take()
-            .unwrap_or_else(|| self.apply_picture(picture))
+            .unwrap_or_else(|| self.apply_picture(picture, view))
     }
 
-    fn apply_picture(&mut self, picture: &Picture) -> bool {
+    fn apply_picture(&mut self, picture: &Picture, view: Option<&Arc<TeamView>>) -> bool {
         let Some(own) = picture.own(self.model.me) else {
             return false;
         };
@@ -222,56 +185,18 @@ impl Situation {
         (self.now, self.begun) = (now, true);
         self.own = *own;
         self.ahead = own.nav.pose().rotation().ahead();
-        let (at, velocity) = self.reckoned(own, now);
-        (self.at, self.velocity) = (at, ned_from_body(own.nav.pose().rotation(), velocity));
         self.motion.observe(
             own,
             self.step_s,
             !(own.disabled || own.tagged && self.model.rules.tagged_boat == TaggedBoat::IsDriven),
         );
-        self.note_events(picture);
-        self.others.clear();
-        let me = self.model.me;
-        for mate in picture.own.iter().filter(|boat| boat.vehicle != me) {
-            let (at, velocity) = self.reckoned(mate, now);
-            self.others.push(OtherBoat {
-                vehicle: mate.vehicle,
-                is_enemy: false,
-                at,
-                // In games of 20 against 20 and more, rotating all of them to the field's frame
-                // measurably slowed decisions, and few are needed.
-                velocity: Velocity::Body(velocity),
-                psi_rad: mate.nav.psi_rad,
-                yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
-                tagged: mate.tagged,
-                disabled: mate.disabled,
-                carrying: mate.carried_flag(),
-                tag_ready: mate.tag_ready_ns,
-                age_s: 0.0,
-                intrudes: false,
-            });
+        // Only if this boat has seen all pictures that are in it, and no others.
+        match view.filter(|view| view.follows(&self.view)) {
+            Some(view) => self.view = Arc::clone(view),
+            None => TeamView::own(&mut self.view).take_in(picture),
         }
-        for contact in &picture.contacts {
-            let (at, velocity) = dead_reckoned(contact, now);
-            let is_enemy = contact.team != self.model.team;
-            let i = contact.vehicle.index();
-            self.turns.resize(self.turns.len().max(i + 1), None);
-            let turn = TurnEstimate::seen(self.turns[i], contact);
-            self.turns[i] = Some(turn);
-            self.others.push(OtherBoat {
-                vehicle: contact.vehicle,
-                is_enemy,
-                at,
-                velocity: Velocity::Ned(velocity),
-                psi_rad: contact.psi_rad,
-                yaw_rate_rad_s: turn.yaw_rate_rad_s(now),
-                tagged: contact.tagged,
-                disabled: self.disabled.contains(&contact.vehicle),
-                carrying: u8::try_from(contact.carrying).ok().map(FlagId),
-                tag_ready: self.tag_ready.get(i).copied().unwrap_or_default(),
-                age_s: (now - contact.seen_ns).as_s(),
-                intrudes: is_enemy && self.model.is_own_side(at),
-            });
+        if let Some(own) = self.view.own_boat(self.model.me) {
+            (self.at, self.velocity) = (own.at, own.velocity());
         }
         if let Some(pairs) = self.interception.take() {
             self.interception_before = pairs;
@@ -294,54 +219,6 @@ impl Situation {
         true
     }
 
-    /// The position of a boat of the team now, and its velocity along its axes. Fixes drop out for
-    /// seconds, and links are silent; headings do not drop out, and the last position is one that
-    /// the boat has left.
-    fn reckoned(&mut self, boat: &OwnBoat, now: SimTime) -> (Ned, Body) {
-        let i = boat.vehicle.index();
-        let fix = boat.fix_ns;
-        self.tracks.resize(self.tracks.len().max(i + 1), None);
-        let mut track = self.tracks[i]
-            .filter(|track| track.fix == fix)
-            .unwrap_or(Track {
-                fix,
-                velocity: Body {
-                    ahead: boat.nav.surge_m_s,
-                    starboard: boat.nav.sway_m_s,
-                },
-                gone: Ned::default(),
-                until: fix,
-            });
-        if (LATE_S..KEEPS_ON_S).contains(&(now - fix).as_s()) {
-            let velocity = ned_from_body(boat.nav.pose().rotation(), track.velocity);
-            track.gone = track.gone + velocity.scaled((now - track.until).as_s());
-            track.until = now;
-        }
-        self.tracks[i] = Some(track);
-        (boat.nav.at() + track.gone, track.velocity)
-    }
-
-    /// Records which enemies have tagged a boat of the team, and so cannot tag again for a while,
-    /// and which boats are out of action.
-    fn note_events(&mut self, picture: &Picture) {
-        for logged in picture.events.iter().filter_map(EventRecord::logged) {
-            match logged.event {
-                Event::Tagged {
-                    cause: TagCause::Opponent(by),
-                    ..
-                } => {
-                    let i = by.index();
-                    self.tag_ready
-                        .resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
-                    self.tag_ready[i] = self.model.rules.tag_ready_after(logged.at);
-                }
-                Event::Disabled(vehicle) => self.disabled.push(vehicle),
-                Event::Enabled(vehicle) => self.disabled.retain(|other| *other != vehicle),
-                _ => {}
-            }
-        }
-    }
-
     /// The boat extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
         turning_on(
@@ -353,18 +230,39 @@ impl Situation {
         )
     }
 
+    /// All other known boats: mates first, then enemies, each in the scenario's order.
+    pub(crate) fn others(&self) -> impl Iterator<Item = &OtherBoat> {
+        self.mates().chain(&self.view.boats[self.view.own..])
+    }
+
+    /// Calls `each` with the index and the distance, m, of every other boat within this distance, in
+    /// any order.
+    pub(crate) fn near(&self, reach_m: f64, mut each: impl FnMut(usize, f64)) {
+        self.view.near(self.at, reach_m, |i, distance_m| {
+            if i >= self.view.own || self.other(i).vehicle != self.model.me {
+                each(i, distance_m);
+            }
+        });
+    }
+
+    /// A boat that [`Situation::near`] has named.
+    pub(crate) fn other(&self, i: usize) -> &OtherBoat {
+        &self.view.boats[i]
+    }
+
     pub(crate) fn enemies(&self) -> impl Iterator<Item = &OtherBoat> {
-        self.others.iter().filter(|other| other.is_enemy)
+        let contacts = self.view.boats[self.view.own..].iter();
+        contacts.filter(|other| other.is_enemy)
     }
 
     /// The enemies on the team's own side that are not tagged.
     fn intruders(&self) -> impl Iterator<Item = &OtherBoat> {
-        self.enemies()
-            .filter(|enemy| !enemy.tagged && enemy.intrudes)
+        self.enemies().filter(|enemy| enemy.is_intruder())
     }
 
     fn mates(&self) -> impl Iterator<Item = &OtherBoat> {
-        self.others.iter().filter(|other| !other.is_enemy)
+        let own = self.view.boats[..self.view.own].iter();
+        own.filter(|mate| mate.vehicle != self.model.me)
     }
 
     /// The boat that `boat` currently refers to.
@@ -383,7 +281,9 @@ impl Situation {
             }
             Boat::NearestDefender => nearest(self.enemy_flag(), self.enemies()),
             Boat::AssignedIntruder => {
-                let pairs = self.interception.get_or_init(|| self.intercepted());
+                let pairs = self
+                    .interception
+                    .get_or_init(|| self.view.pairs_after(&self.interception_before));
                 let mine = pairs
                     .iter()
                     .find(|pair| pair.interceptor == self.model.me)?;
@@ -406,37 +306,6 @@ impl Situation {
     /// The squared distance of a place from the team's nearest flag, m².
     fn flag_distance_squared(&self, at: Ned) -> f64 {
         self.model.own_flag_near(at).distance_squared(at)
-    }
-
-    /// Computes the interception pairs.
-    fn intercepted(&self) -> Vec<Pair> {
-        let intruder = |boat: &OtherBoat| Intruder {
-            vehicle: boat.vehicle,
-            at: boat.at,
-            velocity: boat.velocity(),
-        };
-        let mut intruders: Vec<Intruder> = self.intruders().map(intruder).collect();
-        // By the flag nearest to each intruder, not the one nearest to this boat, so that all boats
-        // of the team find the same order. By their distance to the flag in the whole team's
-        // knowledge, so that every mate computes the same pairs.
-        intruders.sort_by(|a, b| {
-            self.flag_distance_squared(a.at)
-                .total_cmp(&self.flag_distance_squared(b.at))
-        });
-        let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
-            vehicle,
-            at,
-            speed_m_s: self.model.boat_speeds_m_s[vehicle.index()],
-            unready_s: tag_wait_s(tag_ready, self.now),
-        };
-        let is_free = !self.own.tagged && self.own.carried_flag().is_none();
-        let own = is_free.then(|| boat(self.model.me, self.at, self.own.tag_ready_ns));
-        let mates = self
-            .free_mates()
-            .map(|mate| boat(mate.vehicle, mate.at, mate.tag_ready));
-        let mut interceptors: Vec<Interceptor> = mates.chain(own).collect();
-        interceptors.sort_by_key(|boat| boat.vehicle);
-        interception::assign(&interceptors, &intruders, &self.interception_before)
     }
 
     /// The untagged mates without a flag.
@@ -611,25 +480,6 @@ fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
         return 0.0;
     }
     (from.velocity - to.velocity).dot(line) / distance_m
-}
-
-/// The estimated position and velocity of a contact now: constant velocity, then slowing down, then
-/// at rest.
-fn dead_reckoned(contact: &Contact, now: SimTime) -> (Ned, Ned) {
-    let seen = Ned {
-        north: contact.north_m,
-        east: contact.east_m,
-    };
-    let velocity = Ned {
-        north: contact.velocity_north_m_s,
-        east: contact.velocity_east_m_s,
-    };
-    let age_s = (now - contact.seen_ns).as_s().max(0.0);
-    let slowing_s = (age_s - KEEPS_ON_S).clamp(0.0, STILL_AFTER_S - KEEPS_ON_S);
-    let left = 1.0 - slowing_s / (STILL_AFTER_S - KEEPS_ON_S);
-    // The integral of a speed that is constant up to the first time and then falls linearly.
-    let gone_s = age_s.min(KEEPS_ON_S) + slowing_s * 0.5 * (1.0 + left);
-    (seen + velocity.scaled(gone_s), velocity.scaled(left))
 }
 
 /// The boat nearest to `at`; ties go to the first.

@@ -1,6 +1,8 @@
 //! Whole games of the shipped strategies.
 
 use crate::files;
+use agent::Mind;
+use messages::{Order, Picture, Word};
 use primitives::{SimTime, VehicleId};
 use rules::count::Counts;
 use scenario::{Outcome, Scenario};
@@ -219,15 +221,36 @@ fn an_agent_that_is_killed_begins_anew_when_it_is_back() {
 }
 
 #[test]
-fn a_fleet_plays_the_same_game_on_any_number_of_threads() {
+fn a_fleet_plays_the_same_game_on_any_number_of_threads_and_when_boats_work_alone() {
     let fleet = shipped("fleet_20v20.toml");
-    let digest = |threads: usize| {
-        let runner = arena::runner_of(agent::minds_of(&fleet)).on_threads(threads);
+    let digest = |minds, threads: usize| {
+        let runner = arena::runner_of(minds).on_threads(threads);
         let watch = |contest: &mut sim::Contest, _: &_| contest.decision() < 300;
         arena::play_on(&fleet, runner, fleet.seed, watch)
             .unwrap()
             .digest
     };
-    let [one, two, sixteen] = [1, 2, 16].map(digest);
-    assert_eq!([&two, &sixteen], [&one, &one]);
+    let alone = |mind| Box::new(Alone(mind)) as Box<dyn Mind>;
+    let alone = agent::minds_of(&fleet).into_iter().map(alone);
+    let want = digest(alone.collect(), 1);
+    for threads in [1, 2, 16] {
+        assert_eq!(digest(agent::minds_of(&fleet), threads), want, "{threads}");
+    }
+}
+
+/// A mind that works out itself what its whole team knows.
+struct Alone(Box<dyn Mind>);
+
+impl Mind for Alone {
+    fn decide(&mut self, picture: &Picture) -> Order {
+        self.0.decide(picture)
+    }
+
+    fn send(&self, messages: &mut Vec<Word>) {
+        self.0.send(messages);
+    }
+
+    fn receive(&mut self, messages: &[Word]) {
+        self.0.receive(messages);
+    }
 }
