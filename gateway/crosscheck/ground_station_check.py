@@ -46,7 +46,7 @@ def drive_with_dronekit(port):
     boat = dronekit.connect(f"tcp:127.0.0.1:{port}", wait_ready=True, timeout=LIMIT_S)
     here = lambda: boat.location.global_relative_frame
     wait_until("dronekit finds it armable", lambda: boat.is_armable)
-    wait_until("it reports its version", lambda: (boat.version.major, boat.version.minor) == (4, 5))
+    wait_until("it reports its version", lambda: (boat.version.major, boat.version.minor) == (4, 6))
     boat.parameters["WP_SPEED"] = 1.5
     check(boat.parameters["WP_SPEED"] == 1.5, "a parameter is set")
     boat.mode = dronekit.VehicleMode("GUIDED")

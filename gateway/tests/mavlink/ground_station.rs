@@ -10,7 +10,7 @@ use gateway::mavlink::dialect::{
     MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA,
     MISSION_REQUEST_LIST_DATA, MISSION_SET_CURRENT_DATA, MavCmd, MavFrame, MavMessage,
     MavMissionResult, MavMissionType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, PARAM_VALUE_DATA,
-    PING_DATA, PLAY_TUNE_DATA, TIMESYNC_DATA,
+    PLAY_TUNE_DATA, TIMESYNC_DATA,
 };
 use messages::Order;
 
@@ -144,13 +144,6 @@ fn requests() -> Vec<Request> {
             }),
             |reply| matches!(reply, M::TIMESYNC(sync) if sync.ts1 == 7 && sync.tc1 > 0),
         ),
-        (
-            M::PING(PING_DATA {
-                seq: 5,
-                ..Default::default()
-            }),
-            |reply| matches!(reply, M::PING(ping) if (ping.seq, ping.target_system) == (5, 255)),
-        ),
         (M::PARAM_REQUEST_READ(read), no_parameter),
         (M::PARAM_SET(set), no_parameter),
         (
@@ -190,7 +183,7 @@ fn every_request_of_a_ground_station_gets_its_reply() {
 }
 
 /// Command, its first parameters, and the result of it in HOLD, disarmed.
-const RESULTS: [(u16, [f32; 2], u8); 15] = [
+const RESULTS: [(u16, [f32; 2], u8); 18] = [
     (60_000, [0.0; 2], 3),
     // DO_START_MAG_CAL and DO_SEND_BANNER, of ArduPilot's own dialect.
     (42_424, [0.0; 2], 3),
@@ -201,7 +194,7 @@ const RESULTS: [(u16, [f32; 2], u8); 15] = [
         [1.0, 0.0],
         0,
     ),
-    (MavCmd::MAV_CMD_GET_HOME_POSITION as u16, [0.0; 2], 4),
+    (MavCmd::MAV_CMD_GET_HOME_POSITION as u16, [0.0; 2], 0),
     (MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16, [33.0, 0.0], 0),
     (
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16,
@@ -216,6 +209,14 @@ const RESULTS: [(u16, [f32; 2], u8); 15] = [
     (MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 1.0], 4),
     (MavCmd::MAV_CMD_MISSION_START as u16, [0.0; 2], 4),
     (MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16, [9.0, 0.0], 2),
+    (
+        MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16,
+        [-1.0, 0.0],
+        2,
+    ),
+    // Not in Rover's default build, and a rate that its loop cannot reach.
+    (MavCmd::MAV_CMD_NAV_SET_YAW_SPEED as u16, [90.0, 1.0], 3),
+    (MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16, [33.0, 1e4], 2),
 ];
 
 #[test]

@@ -11,4 +11,5 @@ mod ground_station;
 mod guided;
 mod preflight;
 mod rig;
+mod rover_sitl;
 mod station;

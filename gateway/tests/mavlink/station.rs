@@ -25,10 +25,14 @@ pub(crate) struct Station {
     framer: Framer,
     /// The system that messages are for.
     pub(crate) target: u8,
+    /// The component that commands are for.
+    pub(crate) component: u8,
     /// The systems that sent messages.
     pub(crate) systems: Vec<u8>,
     /// Acknowledgements of commands: number and result.
     acks: Vec<(u16, u8)>,
+    /// What came after the last command.
+    pub(crate) heard: Vec<MavMessage>,
 }
 
 impl Station {
@@ -46,8 +50,10 @@ impl Station {
             writer: Writer::new(255, 190),
             framer: Framer::new(),
             target: 1,
+            component: 1,
             systems: vec![],
             acks: vec![],
+            heard: vec![],
         };
         station
             .ardupilot
@@ -142,13 +148,13 @@ impl Station {
         }
         payload.extend([0; 4]);
         payload.extend(command.to_le_bytes());
-        payload.extend([self.target, 1, 0, 0, 0]);
+        payload.extend([self.target, self.component, 0, 0, 0]);
         let (id, extra_crc) = if is_long { (76, 152) } else { (75, 158) };
         let mut bytes = vec![];
         self.writer.write_raw(id, extra_crc, &payload, &mut bytes);
         self.acks.clear();
         self.ardupilot.receive(self.now, &bytes);
-        self.run(0.9);
+        self.heard = self.run(0.9);
         self.acks
             .iter()
             .find(|(known, _)| *known == command)

@@ -6,7 +6,7 @@
 )]
 
 use super::ArduPilot;
-use super::set_point::is_global;
+use super::set_point::{SPEED_MIN_M_S, is_global};
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
     AUTOPILOT_VERSION_DATA, COMMAND_ACK_DATA, COMMAND_INT_DATA, COMMAND_LONG_DATA,
@@ -14,12 +14,17 @@ use crate::mavlink::dialect::{
 };
 use ::mavlink::MessageData;
 use primitives::SimTime;
+use primitives::frame::Ned;
 
 const DONE: MavResult = MavResult::MAV_RESULT_ACCEPTED;
 const DENIED: MavResult = MavResult::MAV_RESULT_DENIED;
 const FAILED: MavResult = MavResult::MAV_RESULT_FAILED;
 /// MAV_CMD_DO_SEND_BANNER, which is not in the common dialect.
 const DO_SEND_BANNER: u16 = 42_428;
+/// Rover's modes, emulated or not.
+const ROVER_MODES: [u32; 14] = [0, 1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 15, 16];
+/// A smaller change does not move the home of a disarmed boat, m.
+const HOME_MOVES_M: f64 = 0.5;
 /// The only flag of MAV_CMD_DO_REPOSITION: the boat may change to GUIDED.
 const CHANGE_MODE: i32 = 1;
 
@@ -35,10 +40,12 @@ impl ArduPilot {
         from: (u8, u8),
         long: &COMMAND_LONG_DATA,
     ) {
-        let has_position = matches!(
-            long.command,
-            MavCmd::MAV_CMD_DO_SET_HOME | MavCmd::MAV_CMD_DO_REPOSITION
-        );
+        // Rover takes the position of this command in a COMMAND_INT only.
+        if long.command == MavCmd::MAV_CMD_DO_REPOSITION {
+            let unsupported = MavResult::MAV_RESULT_UNSUPPORTED;
+            return self.acknowledge(from, long.command as u16, unsupported);
+        }
+        let has_position = long.command == MavCmd::MAV_CMD_DO_SET_HOME;
         let whole =
             |param: f32| (if has_position { 1e7 } else { 1.0 } * f64::from(param)).round() as i32;
         let int = COMMAND_INT_DATA {
@@ -87,15 +94,17 @@ impl ArduPilot {
                 result_of(self.send_message(now, HOME_POSITION_DATA::ID))
             }
             MavCmd::MAV_CMD_DO_SET_HOME => self.command_home(command),
-            MavCmd::MAV_CMD_DO_CHANGE_SPEED if !matches!(param1 as i32, 0 | 1) => DENIED,
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => result_of(self.change_speed(f64::from(param2))),
             MavCmd::MAV_CMD_DO_REPOSITION => self.command_reposition(command),
-            MavCmd::MAV_CMD_NAV_SET_YAW_SPEED => self.command_yaw_speed(now, command),
             MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH => self.command_mode(RoverMode::Rtl.number()),
             // Rover does not support a part of the mission either.
             MavCmd::MAV_CMD_MISSION_START if param1 != 0.0 || param2 != 0.0 => DENIED,
             MavCmd::MAV_CMD_MISSION_START => self.command_mode(RoverMode::Auto.number()),
-            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT if self.set_current(param1 as u16) => DONE,
+            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT
+                if param1 >= 0.0 && self.set_current(param1 as u16) =>
+            {
+                DONE
+            }
             MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => DENIED,
             _ => MavResult::MAV_RESULT_UNSUPPORTED,
         };
@@ -107,7 +116,7 @@ impl ArduPilot {
         let result = if command == DO_SEND_BANNER {
             self.say(
                 MavSeverity::MAV_SEVERITY_INFO,
-                "ArduRover V4.5.7, emulated by Squall",
+                "ArduRover V4.6.3, emulated by Squall",
             );
             DONE
         } else {
@@ -139,6 +148,17 @@ impl ArduPilot {
 
     pub(super) fn command_mode(&mut self, number: u32) -> MavResult {
         let mode = RoverMode::from_number(number);
+        if !ROVER_MODES.contains(&number) {
+            self.say(
+                MavSeverity::MAV_SEVERITY_WARNING,
+                &format!("No such mode {number}"),
+            );
+            return FAILED;
+        }
+        if mode == RoverMode::Auto && self.mission.waypoints() == 0 {
+            let text = "No Mission. Can't set AUTO.";
+            self.say(MavSeverity::MAV_SEVERITY_NOTICE, text);
+        }
         let can = match mode {
             RoverMode::Manual | RoverMode::Hold | RoverMode::Guided | RoverMode::Loiter => true,
             // Rover rejects a mode without a task, and reports so in a STATUSTEXT, which the
@@ -154,28 +174,26 @@ impl ArduPilot {
         DONE
     }
 
-    fn command_arming(&mut self, arm: bool) -> MavResult {
+    pub(super) fn command_arming(&mut self, arm: bool) -> MavResult {
         if !arm {
             // As in ArduPilot: outside AUTO, the mission begins again.
             if self.is_armed && self.mode != RoverMode::Auto {
                 self.autopilot.next = 1;
             }
-            self.is_armed = false;
+            if std::mem::take(&mut self.is_armed) {
+                self.say(MavSeverity::MAV_SEVERITY_INFO, "Throttle disarmed");
+            }
             return DONE;
         }
-        let Some(here) = self.lat_lon_e7() else {
+        if self.sensed.own.is_none() {
             return self.refuse("PreArm: GPS 1: Bad fix");
-        };
+        }
         if !self.is_armed {
             if !self.mode.allows_arming() {
                 return self.refuse("Arm: Mode not armable");
             }
             self.is_armed = true;
-            // As in ArduPilot: the home is where the boat is first armed, unless a ground station
-            // has set it.
-            if self.home.is_none() {
-                self.set_home(here);
-            }
+            self.say(MavSeverity::MAV_SEVERITY_INFO, "Throttle armed");
         }
         DONE
     }
@@ -191,8 +209,24 @@ impl ArduPilot {
         } else {
             Some(at_e7).filter(|at_e7| command.param1 == 0.0 && self.place(*at_e7).is_some())
         };
-        home.into_iter().for_each(|home| self.set_home(home));
+        if let Some(home @ (lat_e7, lon_e7)) = home {
+            self.set_home(home);
+            self.is_home_locked = true;
+            let (lat_deg, lon_deg) = (1e-7 * f64::from(lat_e7), 1e-7 * f64::from(lon_e7));
+            let text = format!("Set HOME to {lat_deg:.5} {lon_deg:.5} at 0.00m");
+            self.say(MavSeverity::MAV_SEVERITY_INFO, &text);
+        }
         result_of(home.is_some())
+    }
+
+    /// Moves the home of a disarmed boat to where it is, as in Rover, unless a ground station has
+    /// set it.
+    pub(super) fn update_home(&mut self, here: Ned) {
+        let before = self.home.and_then(|home| self.place(home));
+        let has_moved = before.is_none_or(|home| home.distance(here) >= HOME_MOVES_M);
+        if !self.is_armed && !self.is_home_locked && has_moved {
+            self.set_home(self.e7(here));
+        }
     }
 
     fn set_home(&mut self, home: (i32, i32)) {
@@ -206,7 +240,7 @@ impl ArduPilot {
     fn change_speed(&mut self, speed_m_s: f64) -> bool {
         match self.mode {
             RoverMode::Guided => self.set_points.set_speed(speed_m_s),
-            RoverMode::Auto | RoverMode::Rtl if speed_m_s >= 0.0 => {
+            RoverMode::Auto | RoverMode::Rtl if speed_m_s >= SPEED_MIN_M_S => {
                 self.autopilot.speed_m_s = Some(speed_m_s);
                 true
             }
@@ -230,21 +264,6 @@ impl ArduPilot {
             return FAILED;
         }
         result_of(self.set_points.go_to(place))
-    }
-
-    /// Sets a heading, from north or relative to the current one, and a speed.
-    fn command_yaw_speed(&mut self, now: SimTime, command: &COMMAND_INT_DATA) -> MavResult {
-        let Some(own) = self.sensed.own.filter(|_| self.mode == RoverMode::Guided) else {
-            return FAILED;
-        };
-        let own_rad = (command.param3 > 0.0).then_some(own.nav.psi_rad);
-        let heading_rad = f64::from(command.param1).to_radians();
-        let speed_m_s = f64::from(command.param2);
-        result_of(
-            self.set_points
-                .take_heading(now, heading_rad, own_rad, speed_m_s)
-                .is_ok(),
-        )
     }
 
     /// Continues with an item of the mission; returns whether it exists.

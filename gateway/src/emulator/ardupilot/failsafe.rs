@@ -60,7 +60,7 @@ impl ArduPilot {
             1 | 3
                 if self.command_mode(RoverMode::Rtl.number()) == MavResult::MAV_RESULT_ACCEPTED => {
             }
-            5 => self.is_armed = false,
+            5 => drop(self.command_arming(false)),
             1..=4 => self.set_mode(RoverMode::Hold),
             _ => {}
         }

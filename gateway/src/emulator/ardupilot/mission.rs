@@ -275,6 +275,8 @@ impl MissionStore {
 /// Why an item is rejected: the boat would not execute it.
 fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     match item.command {
+        _ if item.param1.is_nan() => Some(MavMissionResult::MAV_MISSION_INVALID_PARAM1),
+        _ if item.param2.is_nan() => Some(MavMissionResult::MAV_MISSION_INVALID_PARAM2),
         MavCmd::MAV_CMD_DO_CHANGE_SPEED => None,
         MavCmd::MAV_CMD_NAV_WAYPOINT if !is_global(item.frame) => {
             Some(MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME)
@@ -293,12 +295,6 @@ fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
 /// The subject of a message: missions, fences or rally points. Acknowledgements need no reply.
 fn type_of(message: &MavMessage) -> Option<MavMissionType> {
     Some(match message {
-        // Only the mission exists.
-        MavMessage::MISSION_CLEAR_ALL(all)
-            if all.mission_type == MavMissionType::MAV_MISSION_TYPE_ALL =>
-        {
-            return None;
-        }
         MavMessage::MISSION_CLEAR_ALL(clear) => clear.mission_type,
         MavMessage::MISSION_COUNT(count) => count.mission_type,
         MavMessage::MISSION_ITEM(item) => item.mission_type,

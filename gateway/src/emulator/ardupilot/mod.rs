@@ -51,6 +51,8 @@ pub struct ArduPilot {
     mission: MissionStore,
     /// Latitude and longitude, 1e-7 degrees.
     home: Option<(i32, i32)>,
+    /// Whether a ground station has set the home.
+    is_home_locked: bool,
     parameters: Parameters,
     streams: Streams,
     station: StationWatch,
@@ -83,6 +85,7 @@ impl ArduPilot {
             autopilot: Autopilot::default(),
             mission: MissionStore::default(),
             home: None,
+            is_home_locked: false,
             parameters: Parameters::new(),
             streams: Streams::new(),
             station: StationWatch::default(),
@@ -121,6 +124,8 @@ impl ArduPilot {
                 }
             }
             self.note(format!("mode {mode:?}"));
+            // Rover shows the new mode at once.
+            self.send(&MavMessage::HEARTBEAT(self.heartbeat()));
         }
     }
 
@@ -202,10 +207,7 @@ impl ArduPilot {
         let from = (*system, *component);
         let is_for_us = message
             .target_system_id()
-            .is_none_or(|target| target == 0 || target == self.system())
-            && message
-                .target_component_id()
-                .is_none_or(|target| target == 0 || target == AUTOPILOT);
+            .is_none_or(|target| target == 0 || target == self.system());
         if !is_for_us || from == (self.system(), AUTOPILOT) {
             return;
         }
@@ -214,10 +216,9 @@ impl ArduPilot {
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {
             MavMessage::HEARTBEAT(_) if is_station => self.station.heard_at = Some(now),
+            // Without an acknowledgement, as from version 4.6 on.
             MavMessage::SET_MODE(set) => {
-                let result = self.command_own_mode(set.base_mode, set.custom_mode);
-                // No command has this message's number, but ArduPilot does the same.
-                self.acknowledge(from, message.message_id() as u16, result);
+                self.command_own_mode(set.base_mode, set.custom_mode);
             }
             MavMessage::COMMAND_LONG(command) => self.take_command_long(now, from, command),
             MavMessage::COMMAND_INT(command) => self.take_command_int(now, from, command),
@@ -256,17 +257,20 @@ impl ArduPilot {
             replies.iter().for_each(|reply| self.send(reply));
         } else if let Some(reply) = self.mission.answer(now, from, self.home, message) {
             reply.iter().for_each(|reply| self.send(reply));
-            self.begin_mission();
+            self.begin_mission(message);
         } else {
             self.answer_other(now, from, message);
         }
     }
 
-    fn begin_mission(&mut self) {
+    fn begin_mission(&mut self, message: &MavMessage) {
         let Some((waypoints, speed_m_s)) = self.mission.take_new() else {
             return;
         };
         let places: Vec<_> = waypoints.iter().map(|at| self.frame.ned(*at)).collect();
+        if !matches!(message, MavMessage::MISSION_CLEAR_ALL(_)) {
+            self.say(MavSeverity::MAV_SEVERITY_INFO, "Flight plan received");
+        }
         self.note(format!(
             "a mission of {} waypoints is accepted",
             places.len()
@@ -358,6 +362,7 @@ impl FrontSeat for ArduPilot {
     fn observe(&mut self, now: SimTime, own: &OwnBoat) {
         self.sensed.observe(now, own);
         self.origin.get_or_insert(own.nav.at());
+        self.update_home(own.nav.at());
     }
 
     fn order(&mut self, now: SimTime) -> Order {

@@ -6,20 +6,26 @@ use crate::mavlink::dialect::{
 };
 use ::mavlink::types::CharArray;
 
-/// Names and initial values.
-const BEGINNING: [(&str, f32); 11] = [
-    ("SYSID_THISMAV", super::SYSTEM as f32),
-    ("SYSID_MYGCS", 255.0),
-    ("INITIAL_MODE", 4.0),
-    ("FRAME_CLASS", 2.0),
-    ("CRUISE_SPEED", 2.0),
-    ("WP_SPEED", 2.0),
-    ("FS_GCS_ENABLE", 0.0),
-    ("FS_GCS_TIMEOUT", 5.0),
-    ("FS_TIMEOUT", 1.5),
-    ("FS_ACTION", 2.0),
-    ("RC_OVERRIDE_TIME", 3.0),
+/// Names, initial values and types.
+const BEGINNING: [(&str, f32, MavParamType); 11] = [
+    ("SYSID_THISMAV", super::SYSTEM as f32, INT16),
+    ("SYSID_MYGCS", 255.0, INT16),
+    ("INITIAL_MODE", 4.0, INT8),
+    ("FRAME_CLASS", 2.0, INT8),
+    ("CRUISE_SPEED", 2.0, REAL32),
+    ("WP_SPEED", 2.0, REAL32),
+    ("FS_GCS_ENABLE", 0.0, INT8),
+    ("FS_GCS_TIMEOUT", 5.0, REAL32),
+    ("FS_TIMEOUT", 1.5, REAL32),
+    ("FS_ACTION", 2.0, INT8),
+    ("RC_OVERRIDE_TIME", 3.0, REAL32),
 ];
+const INT8: MavParamType = MavParamType::MAV_PARAM_TYPE_INT8;
+const INT16: MavParamType = MavParamType::MAV_PARAM_TYPE_INT16;
+const REAL32: MavParamType = MavParamType::MAV_PARAM_TYPE_REAL32;
+
+/// The index in replies about a parameter that was named.
+const BY_NAME: u16 = u16::MAX;
 
 /// All parameters.
 #[derive(Clone, Debug)]
@@ -30,7 +36,7 @@ pub(super) struct Parameters {
 impl Parameters {
     pub(super) fn new() -> Parameters {
         Parameters {
-            values: BEGINNING.map(|(_, value)| value),
+            values: BEGINNING.map(|(_, value, _)| value),
         }
     }
 
@@ -50,7 +56,7 @@ impl Parameters {
             MavMessage::PARAM_REQUEST_LIST(_) => {
                 return Some(
                     (0..BEGINNING.len())
-                        .map(|index| self.message(index))
+                        .map(|index| self.message(index, index as u16))
                         .collect(),
                 );
             }
@@ -67,7 +73,8 @@ impl Parameters {
                         MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST,
                     )
                 };
-                index.map_or_else(missing, |index| self.message(index))
+                let shown = by_index.map_or(BY_NAME, |index| index as u16);
+                index.map_or_else(missing, |index| self.message(index, shown))
             }
             MavMessage::PARAM_SET(set) => {
                 let refuse = |reason| error(from, set.param_id, -1, reason);
@@ -77,8 +84,12 @@ impl Parameters {
                         refuse(MavParamError::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE)
                     }
                     Some(index) => {
-                        self.values[index] = set.param_value;
-                        self.message(index)
+                        self.values[index] = match BEGINNING[index].2 {
+                            INT8 => f32::from(set.param_value as i8),
+                            INT16 => f32::from(set.param_value as i16),
+                            _ => set.param_value,
+                        };
+                        self.message(index, BY_NAME)
                     }
                 }
             }
@@ -87,25 +98,27 @@ impl Parameters {
         Some(vec![one])
     }
 
-    fn message(&self, index: usize) -> MavMessage {
+    fn message(&self, index: usize, param_index: u16) -> MavMessage {
         MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
             param_value: self.values[index],
             param_count: BEGINNING.len() as u16,
-            param_index: index as u16,
+            param_index,
             param_id: BEGINNING[index].0.into(),
-            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+            param_type: BEGINNING[index].2,
         })
     }
 }
 
 fn index_of(name: &str) -> Option<usize> {
-    BEGINNING.iter().position(|(known, _)| *known == name)
+    BEGINNING
+        .iter()
+        .position(|(known, ..)| known.eq_ignore_ascii_case(name))
 }
 
-/// Whether a value is valid for a parameter: a system must be a valid system number.
+/// Whether a value is valid for a parameter: the boat must keep a valid system number.
 fn is_allowed(name: &str, value: f32) -> bool {
     value.is_finite()
-        && (!name.starts_with("SYSID_") || (1.0..=255.0).contains(&value) && value.fract() == 0.0)
+        && (name != "SYSID_THISMAV" || (1.0..=255.0).contains(&value) && value.fract() == 0.0)
 }
 
 fn error(

@@ -4,11 +4,11 @@
 
 use super::ArduPilot;
 use super::mission::ack;
+use crate::mavlink::Unreadable;
 use crate::mavlink::dialect::{
     FILE_TRANSFER_PROTOCOL_DATA, LOG_DATA_DATA, LOG_ENTRY_DATA, MavMessage, MavMissionResult,
-    MavSeverity, PING_DATA, STATUSTEXT_DATA, TIMESYNC_DATA,
+    MavSeverity, STATUSTEXT_DATA, TIMESYNC_DATA,
 };
-use crate::mavlink::{AUTOPILOT, Unreadable};
 use ::mavlink::Message;
 use primitives::SimTime;
 
@@ -45,11 +45,6 @@ impl ArduPilot {
                 target_component,
                 ..sync.clone()
             }),
-            MavMessage::PING(ping) if ping.target_system == 0 => MavMessage::PING(PING_DATA {
-                target_system,
-                target_component,
-                ..ping.clone()
-            }),
             MavMessage::LOG_REQUEST_LIST(_) => MavMessage::LOG_ENTRY(LOG_ENTRY_DATA::default()),
             MavMessage::LOG_REQUEST_DATA(wanted) => MavMessage::LOG_DATA(LOG_DATA_DATA {
                 id: wanted.id,
@@ -65,7 +60,7 @@ impl ArduPilot {
                 })
             }
             MavMessage::SET_GPS_GLOBAL_ORIGIN(_) => self.origin_message(),
-            // Neither requests anything.
+            // Nothing is requested, and Rover answers no PING.
             MavMessage::TIMESYNC(_) | MavMessage::PING(_) | MavMessage::LOG_REQUEST_END(_) => {
                 return;
             }
@@ -88,7 +83,7 @@ impl ArduPilot {
         };
         let from = (message.system, message.component);
         let is_for = |byte: usize, own: u8| message.byte(byte) == 0 || message.byte(byte) == own;
-        if !is_for(*at, self.system()) || !is_for(at + 1, AUTOPILOT) {
+        if !is_for(*at, self.system()) {
             return;
         }
         match message.id {

@@ -16,9 +16,11 @@ use std::f64::consts::PI;
 /// MAVLink.
 const HELD_S: f64 = 3.0;
 /// Rover's message when a set-point in mode GUIDED expires.
-pub(super) const FORGOTTEN: &str = "target not received last 3.0 secs, stopping";
+pub(super) const FORGOTTEN: &str = "target not received last 3secs, stopping";
 /// A boat with a rate of turn steers to the heading that the rate reaches in this time, s.
 const TURN_LEAD_S: f64 = 1.0;
+/// Minimum commanded speed on the way to a position, m/s.
+pub(super) const SPEED_MIN_M_S: f64 = 0.05;
 /// Maximum commanded speed, m/s.
 const SPEED_MAX_M_S: f64 = 100.0;
 
@@ -262,28 +264,6 @@ impl SetPoints {
         )
     }
 
-    /// Sets a heading, rad, from north or relative to the given heading, and a speed, m/s.
-    ///
-    /// # Errors
-    /// Non-finite numbers.
-    pub(super) fn take_heading(
-        &mut self,
-        now: SimTime,
-        heading_rad: f64,
-        own_rad: Option<f64>,
-        speed_m_s: f64,
-    ) -> Result<(), &'static str> {
-        let before = |own_rad: f64| match self.guided {
-            Some((_, Course::Heading(ordered_rad), _)) => ordered_rad,
-            _ => own_rad,
-        };
-        self.set(
-            now,
-            Course::Heading(heading_rad + own_rad.map_or(0.0, before)),
-            speed_m_s,
-        )
-    }
-
     /// Goes to a position if it is valid.
     pub(super) fn go_to(&mut self, place: Ned) -> bool {
         if place.is_finite() {
@@ -294,7 +274,7 @@ impl SetPoints {
 
     /// Sets the speed on the way to a position, m/s; returns whether there is one.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
-        let is_taken = self.destination.is_some() && speed_m_s >= 0.0;
+        let is_taken = self.destination.is_some() && speed_m_s >= SPEED_MIN_M_S;
         self.speed_m_s = if is_taken {
             Some(speed_m_s)
         } else {
@@ -330,15 +310,12 @@ impl SetPoints {
         Ok(())
     }
 
-    /// Manual control: steering is the y axis; throttle is the z axis, 0 to 1000 with rest at 500,
-    /// or x if that is set.
+    /// Manual control: steering is the y axis and throttle the z axis, both -1000 to 1000 with rest
+    /// at 0.
     pub(super) fn take_manual(&mut self, now: SimTime, control: &MANUAL_CONTROL_DATA) {
-        let throttle = 0.002 * (f64::from(control.z) - 500.0);
-        self.manual = Some((
-            now,
-            throttle.clamp(-1.0, 1.0),
-            (0.001 * f64::from(control.y)).clamp(-1.0, 1.0),
-        ));
+        let [steering, throttle] =
+            [control.y, control.z].map(|axis| (0.001 * f64::from(axis)).clamp(-1.0, 1.0));
+        self.manual = Some((now, throttle, steering));
     }
 
     /// RC override: steering is channel 1, throttle channel 3, 1000 to 2000 µs with rest at 1500; 0

@@ -24,10 +24,10 @@ use std::collections::BTreeMap;
 
 /// POSITION_TARGET_GLOBAL_INT of Rover: only the position counts.
 const POSITION_ALONE: u16 = 0xFDF8;
-/// Minimum interval of a message, s.
-const INTERVAL_MIN_S: f64 = 0.02;
-/// Version 4.5.7, in ArduPilot's encoding.
-const VERSION: u32 = 0x0405_07FF;
+/// Minimum interval of a message, s: four fifths of Rover's 50 loops a second.
+const INTERVAL_MIN_S: f64 = 0.025;
+/// Version 4.6.3, in ArduPilot's encoding.
+const VERSION: u32 = 0x0406_03FF;
 
 /// EKF_STATUS_REPORT of ArduPilot's own dialect: its number, the byte of its definition in the
 /// checksum, and its flags when healthy and without a fix.
@@ -110,7 +110,8 @@ impl Streams {
     // (MAV_CMD_SET_MESSAGE_INTERVAL).
     pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> MavResult {
         let is_streamed = streamed().any(|known| known == id);
-        if !is_streamed && !ON_REQUEST.contains(&id) || interval_us < -1.0 {
+        let is_too_fast = interval_us > 0.0 && interval_us < 1e6 * INTERVAL_MIN_S;
+        if !is_streamed && !ON_REQUEST.contains(&id) || interval_us < -1.0 || is_too_fast {
             return MavResult::MAV_RESULT_DENIED;
         }
         let every_s = if interval_us > 0.0 {
@@ -128,7 +129,7 @@ impl Streams {
         let never = if is_known { -1 } else { 0 };
         self.regular
             .get(&id)
-            .map_or(never, |(every_s, _)| (1e6 * every_s) as i32)
+            .map_or(never, |(every_s, _)| (1e6 * every_s).round() as i32)
     }
 
     /// Sets the rate of one stream, or of all.
@@ -240,7 +241,7 @@ impl ArduPilot {
         })
     }
 
-    fn heartbeat(&self) -> HEARTBEAT_DATA {
+    pub(super) fn heartbeat(&self) -> HEARTBEAT_DATA {
         let mut base_mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
         base_mode |= match self.mode {
             RoverMode::Manual | RoverMode::Acro | RoverMode::Steering => {
@@ -427,7 +428,8 @@ fn boot_ms(now: SimTime) -> u32 {
 }
 
 fn version() -> AUTOPILOT_VERSION_DATA {
-    let capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    let capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
