@@ -30,7 +30,7 @@ pub(crate) enum PolicyFault {
 }
 
 /// The time of the next decision; `None`: at once.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Due(Option<SimTime>);
 
 impl Due {

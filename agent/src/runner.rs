@@ -206,9 +206,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
             let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
             let work = || {
                 while let Some(part) = next() {
-                    for (picture, boat) in part {
-                        boat.decide(*picture, teams);
-                    }
+                    part.iter_mut()
+                        .for_each(|(picture, boat)| boat.decide(*picture, teams));
                 }
             };
             std::thread::scope(|scope| {

@@ -466,7 +466,7 @@ def _strategy(policy: Policy, model: str, kind: str, period_s: float) -> str:
         action = 'action = "pyquaticus"'
     else:
         action = (
-            f"action = []   # the {policy.outputs} actions in order, each [share of the top speed, turn in degrees,"
+            f"action = []   # the {policy.outputs} actions in order, each [fraction of the top speed, turn in degrees,"
             " clockwise]"
         )
     sampled = "" if policy.picks is not None else "sampled = true   # draws actions by their probabilities\n"

@@ -77,6 +77,6 @@ pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
         Task::FullStop(task) => Box::new(task),
         Task::Shield(task) => Box::new(task),
         Task::Attractor(task) => Box::new(task),
-        Task::Policy(task) => Box::new(policy::PolicyBehaviour::new(task)),
+        Task::Policy(task) => Box::new(policy::PolicyBehaviour::new(*task)),
     }
 }

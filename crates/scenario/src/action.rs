@@ -26,11 +26,11 @@ pub enum ActionSpace {
     Table(ActionTable),
 }
 
-/// What a policy chooses from, by name.
+/// Action spaces by name.
 #[derive(JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[expect(dead_code, reason = "only the schema is used")]
-enum Named {
+pub(crate) enum Named {
     /// Those of Pyquaticus: full or half speed in eight directions, and a stop.
     Pyquaticus,
     /// Two numbers from -1 to 1: the turn in half turns clockwise, and the speed, from 0 to the
@@ -55,7 +55,7 @@ impl JsonSchema for ActionSpace {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
 pub struct ActionTable {
-    /// Share of the boat's top speed, and turn in degrees clockwise.
+    /// Fraction of the boat's top speed, and turn in degrees clockwise.
     actions: [[f64; 2]; ACTIONS_MAX],
     count: usize,
 }
@@ -104,13 +104,13 @@ impl TryFrom<Vec<[f64; 2]>> for ActionTable {
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "only the schema is used")]
-#[schemars(extend("x-expected" = "pyquaticus, continuous, options, or a list of [share of the top speed, turn in degrees]"))]
+#[schemars(extend("x-expected" = "pyquaticus, continuous, options, or a list of [fraction of the top speed, turn in degrees]"))]
 pub(crate) enum ActionKey {
-    Named(ActionSpace),
+    Named(Named),
     Table(#[schemars(length(min = 2, max = 64))] Vec<TableAction>),
 }
 
-/// A share of the boat's top speed, and a turn in degrees clockwise.
+/// A fraction of the boat's top speed, and a turn in degrees clockwise.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "only the schema is used")]
 pub(crate) struct TableAction(
@@ -132,8 +132,8 @@ impl Action {
     pub fn drawn(logits: &[f32], unit: f64) -> Action {
         let mut below = 0.0;
         let all = probabilities(logits);
-        let drawn = all.iter().position(|share| {
-            below += f64::from(*share);
+        let drawn = all.iter().position(|probability| {
+            below += f64::from(*probability);
             unit < below
         });
         // Rounding can leave the sum just below 1.

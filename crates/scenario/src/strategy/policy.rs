@@ -65,7 +65,8 @@ struct ModelKeys {
     limit_s: Option<f64>,
     /// The model's inputs. Default: as in its metadata; for an entry, the game's.
     observation: Option<ObservationSpace>,
-    /// The model's actions: a name, or a table of [share of the top speed, turn in degrees clockwise].
+    /// The model's actions: a name, or a table of [fraction of the top speed,
+    /// turn in degrees clockwise].
     /// Default: as in its metadata.
     action: Option<ActionKey>,
     /// Time between decisions, s. Default: as in the metadata; for an entry, the game's.

@@ -32,7 +32,7 @@ pub enum Task {
     MemoryTurnLimit(MemoryTurnLimit),
     Timer(Timer),
     FullStop(FullStop),
-    Policy(Policy),
+    Policy(Box<Policy>),
 }
 
 impl Task {
