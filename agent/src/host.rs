@@ -330,7 +330,7 @@ impl HostMind {
                 speed_m_s: speed_m_s.clamp(0.0, top_m_s),
             },
             Err(why) => {
-                let (_, count) = self.faults.get_or_insert_with(|| (why, 0));
+                let (_, count) = self.faults.get_or_insert((why, 0));
                 *count += 1;
                 numbered(STOP)
             }

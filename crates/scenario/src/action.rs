@@ -103,7 +103,11 @@ impl TryFrom<Vec<[f64; 2]>> for ActionTable {
 /// The key for actions in a file: a named space, or a table.
 #[derive(JsonSchema)]
 #[serde(untagged)]
-#[expect(dead_code, reason = "only the schema is used")]
+#[expect(
+    dead_code,
+    clippy::large_enum_variant,
+    reason = "only the schema is used"
+)]
 #[schemars(extend("x-expected" = "pyquaticus, continuous, options, or a list of [share of the top speed, turn in degrees]"))]
 pub(crate) enum ActionKey {
     Named(ActionSpace),

@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 use strum::IntoStaticStr;
 
 /// The task of a behaviour.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "only a policy may have a table of actions"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, IntoStaticStr, JsonSchema)]
 #[strum(serialize_all = "snake_case")]
 #[schemars(rename_all = "snake_case")]
