@@ -243,13 +243,13 @@ fn add_agent(
                 vehicles: vehicles.clone(),
                 wait: WAIT,
                 silence: SILENCE,
-                mind: None,
+                minds: None,
                 policy_wait: Duration::ZERO,
                 stop: Arc::new(AtomicBool::new(false)),
             };
             let mut refused = Refusals::default();
             let served = agent::node::serve(&settings, &mut |news| {
-                if let News::Left { refused: all } = news {
+                if let News::Left { refused: all, .. } = news {
                     refused = all;
                 }
             });

@@ -65,7 +65,7 @@ pub struct TeamView {
 
 /// Interception pairs of the present picture with the previous ones that they follow from.
 #[derive(Debug, Default)]
-struct Pairings(Mutex<Vec<(Arc<[Pair]>, Arc<[Pair]>)>>);
+struct Pairings(Mutex<Vec<[Arc<[Pair]>; 2]>>);
 
 impl Clone for Pairings {
     /// Empty: it only saves computing them again.
@@ -297,14 +297,14 @@ impl TeamView {
         // not, because it was tagged, gets its own until they are the same again.
         let same = known
             .iter()
-            .find(|(other, _)| Arc::ptr_eq(other, before) || other == before);
-        if let Some((_, pairs)) = same {
+            .find(|[other, _]| Arc::ptr_eq(other, before) || other == before);
+        if let Some([_, pairs]) = same {
             return Arc::clone(pairs);
         }
         let new = self.intercepted(before);
-        let same = known.iter().find(|(_, pairs)| **pairs == *new);
-        let pairs = same.map_or_else(|| new.into(), |(_, pairs)| Arc::clone(pairs));
-        known.push((Arc::clone(before), Arc::clone(&pairs)));
+        let same = known.iter().find(|[_, pairs]| **pairs == *new);
+        let pairs = same.map_or_else(|| new.into(), |[_, pairs]| Arc::clone(pairs));
+        known.push([Arc::clone(before), Arc::clone(&pairs)]);
         pairs
     }
 

@@ -92,7 +92,7 @@ fn boats_of_the_team_go_on_while_their_fixes_drop_out() {
             for boat in &mut scene.own {
                 boat.fix_ns = primitives::SimTime::from_s(10.0);
             }
-            let want_m = f64::hypot(east_m + gone_m, north_m);
+            let want_m = primitives::math::length(east_m + gone_m, north_m);
             let got_m = answer(&mut helm, &scene);
             assert!(
                 (got_m - want_m).abs() < 1e-9,

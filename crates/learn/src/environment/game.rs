@@ -11,6 +11,7 @@ use primitives::{TeamId, VehicleId};
 use rules::count::Tally;
 use rules::event::{EventCursor, Logged};
 use scenario::Scenario;
+use scenario::policy::PolicyModel;
 use sim::Contest;
 use std::any::Any;
 
@@ -68,7 +69,8 @@ impl Game {
                     agent::mind_by(scenario, vehicle, strategy)
                 }
                 (false, Player::Model(model), _) => {
-                    Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone(), false))
+                    let pilot = policy_pilot(setup, scenario, vehicle);
+                    Box::new(pilot.by_model(PolicyModel::clone(model), false))
                 }
                 // Same as in the arena, but with pilots as minds: a test plays the same game in the
                 // arena and compares digests.

@@ -39,7 +39,7 @@ pub enum Player {
     /// The helms of a strategy.
     Strategy(Box<Strategy>),
     /// A fixed policy with the same control as the learning one.
-    Model(PolicyModel),
+    Model(Box<PolicyModel>),
 }
 
 /// The setup of an environment.

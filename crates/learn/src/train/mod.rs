@@ -375,8 +375,11 @@ impl Trainer {
                 .state
                 .league
                 .keep(self.state.samples, model, league.most);
-            kept.into_iter()
-                .for_each(|model| self.environment.games.add_opponent(Player::Model(model)));
+            kept.into_iter().for_each(|model| {
+                self.environment
+                    .games
+                    .add_opponent(Player::Model(Box::new(model)))
+            });
             let played = self.state.played.last_mut();
             played
                 .into_iter()
@@ -504,7 +507,7 @@ fn environment(
     setup.opponents.extend(
         past.iter()
             .filter_map(PastSelf::model)
-            .map(|model| (0.0, Player::Model(model))),
+            .map(|model| (0.0, Player::Model(Box::new(model)))),
     );
     let stage = &training.stage[state.stage.min(setups.len() - 1)];
     let at_restart = state.played.first().map(|played| played.weights.clone());
@@ -540,7 +543,11 @@ fn play_again(
             .chunks(environment.rows().0)
             .try_for_each(|actions| environment.step(actions))?;
         let kept = update.kept.iter().filter_map(PastSelf::model);
-        kept.for_each(|model| environment.games.add_opponent(Player::Model(model)));
+        kept.for_each(|model| {
+            environment
+                .games
+                .add_opponent(Player::Model(Box::new(model)))
+        });
     }
     environment.actions = Some(vec![]);
     Ok(())
