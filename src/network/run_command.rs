@@ -160,6 +160,8 @@ impl Player for Processes<'_> {
                 screen::remark(&problem);
             }
         }
+        // Kills those that are still searching for the game, whose output would not end.
+        drop(everybody);
         if let Some(report) = &mut report {
             report.run.entry_faults = faults.iter().flatten().collect();
         }

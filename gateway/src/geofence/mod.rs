@@ -92,7 +92,7 @@ impl GeofenceWatch {
             let mut from = at;
             path.iter().all(|leg| {
                 // Slack adds up in a turn: far from the edge it exceeds what the boat can sail.
-                if room_m >= leg.reach_m {
+                if room_m > leg.reach_m {
                     from = at + leg.end;
                     return true;
                 }
