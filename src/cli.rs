@@ -311,7 +311,7 @@ mod tests {
                 };
                 let text = error.to_string();
                 let is_explained = error.kind() != ErrorKind::ValueValidation
-                    || ["expected", "allowed", "no recording matches"]
+                    || ["expected", "allowed", "no recording", "there is no"]
                         .iter()
                         .any(|words| text.contains(words));
                 assert!(
