@@ -68,7 +68,8 @@ test('a recording agrees with its events at every moment', async (t) => {
     });
   };
   const kinds = new Set();
-  for (const event of result.events.filter(({ event }) => ['grabbed', 'captured', 'flag_returned'].includes(event)).slice(0, 8)) {
+  const few = ['grabbed', 'captured', 'flag_returned'].flatMap((kind) => result.events.filter(({ event }) => event === kind).slice(0, 3));
+  for (const event of few) {
     await scrub(sight, event.at_s + JUST_AFTER_S);
     await check('at the pressed position');
     kinds.add(event.event);
