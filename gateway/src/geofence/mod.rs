@@ -91,15 +91,12 @@ impl GeofenceWatch {
         let is_sound = |path: &Vec<Leg>| {
             let mut from = at;
             path.iter().all(|leg| {
-                // Slack adds up in a turn: far from the edge it exceeds what the boat can sail.
-                if room_m > leg.reach_m {
-                    from = at + leg.end;
-                    return true;
-                }
                 let end = at + leg.end;
-                let is_inside = self.area.contains_way(from, end);
-                from = end;
-                is_inside && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
+                let start = std::mem::replace(&mut from, end);
+                // Slack adds up in a turn: far from the edge it exceeds what the boat can sail.
+                room_m > leg.reach_m
+                    || self.area.contains_way(start, end)
+                        && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
             })
         };
         let is_straight_sound =
