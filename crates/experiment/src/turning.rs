@@ -3,7 +3,7 @@
 
 use crate::Estimate;
 use crate::pipeline::{Game, play_in_order};
-use crate::whatif::{Moment, Past, fork, seed_of};
+use crate::whatif::{Moment, Past, future_of, seed_of};
 use agent::MindRunner;
 use messages::helm::HelmReport;
 use parking_lot::Mutex;
@@ -163,8 +163,7 @@ impl Course {
             if contest.now().as_s() >= step_s * at.len() as f64 {
                 at.push(contest.now());
                 decisions.push(decisions_of(contest.scenario(), runner));
-                let copy = fork(runner).map(|runner| Moment::new(contest.clone(), runner));
-                moments.push(copy.map(Mutex::new));
+                moments.push(Moment::copy_of(contest, runner).map(Mutex::new));
             }
             true
         });
@@ -200,19 +199,18 @@ impl Course {
         let Course {
             moments, values, ..
         } = self;
-        let mut next = futures.iter();
         play_in_order(
             futures.len(),
             run,
             |(), i, stop| {
                 let (moment, future) = futures[i];
-                let future = moments[moment].lock().reseeded(seed_of(past, future))?;
-                let contest = future.end(&[], |_| !stop.is_set());
-                Ok::<_, String>(Game::new(&past.scenario, contest.outcome()))
+                let seed = seed_of(past, future);
+                let game = future_of(&past.scenario, &moments[moment], (seed, &[]), stop)?;
+                Ok::<_, String>((moment, game))
             },
-            |game| {
-                let (moment, _) = next.next().expect("one game for each future");
-                values[*moment].push(value(game?.winner));
+            |played| {
+                let (moment, game) = played?;
+                values[moment].push(value(game.winner));
                 tell();
                 Ok(())
             },
@@ -404,10 +402,8 @@ fn boats(
                 [(VehicleId::at(boat), baseline)]
             });
             let seed = seed_of(past, i / (count + 1));
-            let future = start.lock().reseeded(seed)?;
             let changes = changes.as_ref().map_or(&[][..], |changes| &changes[..]);
-            let contest = future.end(changes, |_| !stop.is_set());
-            Ok::<_, String>(Game::new(&past.scenario, contest.outcome()))
+            future_of(&past.scenario, start, (seed, changes), stop)
         },
         |game| {
             games.push(game?);

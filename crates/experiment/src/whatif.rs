@@ -1,7 +1,7 @@
 //! Futures of a recorded game: the same past up to a given time, and then other minds and other
 //! random numbers.
 
-use crate::pipeline::{Game, play_in_order};
+use crate::pipeline::{Game, Stop, play_in_order};
 use agent::MindRunner;
 use messages::input::Input;
 use parking_lot::Mutex;
@@ -34,8 +34,12 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    pub(crate) fn new(contest: Contest, runner: MindRunner) -> Moment {
-        Moment { contest, runner }
+    /// A copy of a game and its minds.
+    pub(crate) fn copy_of(contest: &Contest, runner: &MindRunner) -> Result<Moment, String> {
+        Ok(Moment {
+            contest: contest.clone(),
+            runner: fork(runner)?,
+        })
     }
 
     /// Plays the past. All minds see what they saw. Stops early when `watch`, which sees contest
@@ -88,7 +92,7 @@ impl Moment {
 }
 
 /// A copy of all minds.
-pub(crate) fn fork(runner: &MindRunner) -> Result<MindRunner, String> {
+fn fork(runner: &MindRunner) -> Result<MindRunner, String> {
     let copy = runner.fork();
     copy.ok_or_else(|| "a mind of this game cannot be copied".to_owned())
 }
@@ -132,15 +136,24 @@ pub fn compare(
         futures,
         (threads, stop),
         |(), i, stop| {
-            let game = |changes| {
-                let future = moment.lock().reseeded(seed_of(past, i))?;
-                let contest = future.end(changes, |_| !stop.is_set());
-                Ok::<Game, String>(Game::new(&past.scenario, contest.outcome()))
-            };
+            let game =
+                |changes| future_of(&past.scenario, &moment, (seed_of(past, i), changes), stop);
             Ok::<_, String>([game(&[])?, game(changes)?])
         },
         |games| take(games?),
     )
+}
+
+/// Plays on from a moment, with this seed and these changes, until the end or `stop`.
+pub(crate) fn future_of(
+    scenario: &Scenario,
+    moment: &Mutex<Moment>,
+    (seed, changes): (u64, Changes<'_>),
+    stop: Stop<'_>,
+) -> Result<Game, String> {
+    let future = moment.lock().reseeded(seed)?;
+    let contest = future.end(changes, |_| !stop.is_set());
+    Ok(Game::new(scenario, contest.outcome()))
 }
 
 /// The seed of a future.
