@@ -3,16 +3,19 @@
 use primitives::angle::wrap_pi;
 use primitives::math;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Serialize};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 use std::f64::consts::PI;
+use std::fmt;
 
 /// The actions that a policy can choose from.
 #[expect(
     clippy::large_enum_variant,
     reason = "there are few spaces, and copies make them simpler to use"
 )]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
     /// Those of Pyquaticus.
@@ -26,10 +29,42 @@ pub enum ActionSpace {
     Table(ActionTable),
 }
 
+// Not derived: an untagged variant's errors would not name the allowed values.
+impl<'de> Deserialize<'de> for ActionSpace {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ActionSpace, D::Error> {
+        struct NameOrTable;
+
+        impl<'de> Visitor<'de> for NameOrTable {
+            type Value = ActionSpace;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(
+                    "pyquaticus, continuous, options, or a list of \
+                     [fraction of the top speed, turn in degrees]",
+                )
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<ActionSpace, E> {
+                Ok(match Named::deserialize(name.into_deserializer())? {
+                    Named::Pyquaticus => ActionSpace::Pyquaticus,
+                    Named::Continuous => ActionSpace::Continuous,
+                    Named::Options => ActionSpace::Options,
+                })
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, actions: A) -> Result<ActionSpace, A::Error> {
+                let table = ActionTable::deserialize(SeqAccessDeserializer::new(actions))?;
+                Ok(ActionSpace::Table(table))
+            }
+        }
+
+        deserializer.deserialize_any(NameOrTable)
+    }
+}
+
 /// Action spaces by name.
-#[derive(JsonSchema)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-#[expect(dead_code, reason = "only the schema is used")]
 pub(crate) enum Named {
     /// Those of Pyquaticus: full or half speed in eight directions, and a stop.
     Pyquaticus,
