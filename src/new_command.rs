@@ -76,7 +76,7 @@ fn name(word: &str) -> Result<String, String> {
     if is_name {
         Ok(word.to_owned())
     } else {
-        Err("expected only the characters a-z, 0-9 and _".to_owned())
+        Err("expected a name from a-z, 0-9 and _".to_owned())
     }
 }
 

@@ -121,7 +121,7 @@ impl Entry {
         match answer {
             Ok(answer) => {
                 self.late = 0;
-                let wrong = || "it gave no action".to_owned();
+                let wrong = || "it returned no action".to_owned();
                 answer
                     .action
                     .ok_or_else(|| answer.error.unwrap_or_else(wrong))
@@ -423,7 +423,7 @@ mod tests {
                 [Ok(Chosen::Turn([1.5, -30.0])), Ok(Chosen::Turn([1.5, -30.0]))],
             ),
             (answer(r#"\"error\":\"why\""#), [error("why"), error("why")]),
-            (answer(r#"\"action\":null"#), [error("it gave no action"), error("it gave no action")]),
+            (answer(r#"\"action\":null"#), [error("it returned no action"), error("it returned no action")]),
             (
                 "if [ $n = 2 ]; then echo '{\"number\":1,\"action\":9}'; echo '{\"number\":2,\"action\":3}'; else echo x; fi".to_owned(),
                 [error("it wrote to the pipe of its host"), Ok(Chosen::Index(3))],

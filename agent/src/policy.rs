@@ -15,7 +15,7 @@ use thiserror::Error;
 pub(crate) enum PolicyFault {
     /// The model was trained for another team size.
     #[error(
-        "the model has {expected} inputs, but a boat in this game has {found} values: it was trained for another team \
+        "the model has {expected} inputs, but a boat in this game has {found} values: it was trained for a different team \
         size"
     )]
     Size {

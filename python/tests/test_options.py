@@ -60,7 +60,7 @@ def test_actions_have_names() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"action": "options"}, "action is options, expected another action space, or a helm whose strategy declares options"),
+        ({"action": "options"}, "action is options, expected a different action space, or a helm whose strategy declares options"),
         ({"action": "options", "control": "policy"}, 'no behaviour of kind "policy" with `sets`'),
         ({"control": "options"}, 'no behaviour of kind "policy" for course and speed'),
     ],

@@ -285,7 +285,7 @@ impl World {
         assert_eq!(
             state.boats.len(),
             self.state.boats.len(),
-            "the state has another number of boats"
+            "the state has a different number of boats"
         );
         self.state = state;
         self.refresh();

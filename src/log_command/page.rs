@@ -182,7 +182,7 @@ fn boats(boats: &[BoatStatistics]) -> String {
         spans_s.map(|span_s| format!("{span_s:>9.1}")).concat()
     });
     let heads = [
-        "      navigation error  error against orders",
+        "      navigation error        tracking error",
         "       rms m    95 % m     rms deg   rms m/s",
     ];
     table(heads, |boat| {

@@ -61,7 +61,7 @@ fn text(report: &Report, baseline: &str, plan: &Plan) -> String {
     );
     text += "\nWhat turned the game, with the 95 % interval of each change\n";
     if report.turning_points.is_empty() {
-        text += "  no change was clear: more --futures show smaller ones\n";
+        text += "  no clear change; use more --futures to detect smaller ones\n";
     }
     for turn in &report.turning_points {
         let [before, after] = turn.chance.map(|chance| 100.0 * chance);
@@ -86,7 +86,7 @@ fn text(report: &Report, baseline: &str, plan: &Plan) -> String {
     add_line(
         &mut text,
         format_args!(
-            "\nWhat each boat added, against {baseline} in its place, over {} games\n\
+            "\nWhat each boat contributed, compared with {baseline} in its place, over {} games\n\
              {:<20}{:>26}{:>26}",
             plan.futures_of_boat, "", "chance of winning", "points ahead"
         ),

@@ -24,7 +24,7 @@ pub(crate) fn report(
         return Ok(None);
     };
     let report: Option<HelmReport> =
-        serde_json::from_slice(&answer).context("the agent uses another version of Squall")?;
+        serde_json::from_slice(&answer).context("the agent uses a different version of Squall")?;
     let name = &observer.info.scenario.vehicles[vehicle.index()].name;
     let report = report.with_context(|| format!("the agent of {name} has no helm"))?;
     if !is_sound(&report, vehicle, observer.info.scenario.vehicles.len()) {

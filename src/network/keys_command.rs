@@ -113,8 +113,8 @@ fn new(args: &NewArgs) -> Result<()> {
     let folders = keys::make(&args.folder, &identities, &hosts, args.days * DAY)?;
     folders.iter().try_for_each(|folder| show(folder))?;
     screen::print(
-        "\nAnyone with a folder has its rights: copy each folder only to the machine that needs it, and use it with --keys \
-         FOLDER.\nA set cannot be extended: to add a part or replace a lost folder, create a new set for all machines.\n",
+        "\nAnyone with a folder has the rights that it grants: copy each folder only to the machine that needs it, and \
+         use it with --keys FOLDER.\nA set cannot be extended: to add a part or replace a lost folder, create a new set for all machines.\n",
     );
     Ok(())
 }

@@ -108,7 +108,7 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
 fn a_taken_seat_stays_taken() {
     let (sim, _agents) = game("lockstep");
     let said = sim.refusal_of(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
-    assert!(said.contains("blue_one has another agent"), "{said}");
+    assert!(said.contains("another agent controls blue_one"), "{said}");
     // A vehicle that does not exist has none.
     let said = sim.refusal_of(&["agent", "--vehicle", "green_one"]);
     assert!(

@@ -185,7 +185,7 @@ fn who_has_the_wrong_keys_is_told_so_and_everybody_with_keys_may_stop_the_boats(
                 &["agent", "--vehicle", "blue_one"],
                 &other.join("team-blue"),
             )),
-            "from another authority",
+            "from a different authority",
         ),
         (
             refused(with(&["agent", "--vehicle", "blue_one"], &of("team-red"))),

@@ -329,7 +329,7 @@ impl Mind for HelmMind {
     fn decide_in_team(&mut self, picture: &Picture, view: Option<&Arc<TeamView>>) -> Order {
         self.restart_if_back(picture);
         if !self.situation.update(picture, view) {
-            self.decided = Decided::Hold("the picture does not show this boat");
+            self.decided = Decided::Hold("this boat is missing from the picture");
             self.situation.motion.hold();
             self.functions.clear();
             self.instances

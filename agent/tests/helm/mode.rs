@@ -305,6 +305,6 @@ fn a_boat_that_is_not_in_the_picture_holds() {
     without.own.remove(0);
     assert_eq!(
         decided(&mut helm, &without).hold.as_deref(),
-        Some("the picture does not show this boat")
+        Some("this boat is missing from the picture")
     );
 }

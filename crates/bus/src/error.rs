@@ -50,7 +50,7 @@ pub enum BusError {
     WrongToken,
     /// A node answered without proving that it knows this token.
     #[error(
-        "no node with this token answered at {key}: the token is that of another game, or an untrusted node answered"
+        "no node with this token answered at {key}: the token belongs to a different game, or an untrusted node answered"
     )]
     Unsealed {
         /// The key of the query.
@@ -69,7 +69,7 @@ pub enum BusError {
     #[error("{0} uses TLS: the game has keys, pass yours with --keys FOLDER (see `squall keys`)")]
     NeedsKeys(String),
     /// A node with this certificate has no right to this query.
-    #[error("the keys of {identity} do not allow this: use those of an operator")]
+    #[error("the keys of {identity} do not allow this: use an operator's keys")]
     NotAllowed {
         /// The identity in the certificate.
         identity: Identity,

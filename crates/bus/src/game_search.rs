@@ -282,7 +282,7 @@ pub fn join(
             asked,
         }),
         Some(JoinReply::Busy { vehicle }) => {
-            Err(Missing::Yet(format!("{vehicle} has another {role}")))
+            Err(Missing::Yet(format!("another {role} controls {vehicle}")))
         }
         Some(JoinReply::Refused { reason }) => Err(Missing::Forever(Refusal::Refused(reason))),
     }

@@ -154,7 +154,7 @@ impl Net {
             .as_ref()
             .filter(|keys| keys.identity == Identity::Sim)
         {
-            let reason = "the keys of sim only serve games: use those of a team, a gateway, an observer or an operator";
+            let reason = "the sim's keys are only for serving games: use those of a team, a gateway, an observer or an operator";
             return Err(BusError::Keys(format!(
                 "{}: {reason}",
                 keys.folder.display()

@@ -107,7 +107,7 @@ fn whose_keys_do_not_fit_is_told_why() {
         "no keys"
     );
     let text = refused(&endpoint, bundle(&own, "sim"));
-    assert!(text.contains("the keys of sim only serve games"), "{text}");
+    assert!(text.contains("are only for serving games"), "{text}");
     let (sim, endpoint) = hub(bundle(&own, "team-blue"));
     let text = sim.err().expect("only the sim's keys serve").to_string();
     assert!(text.contains("not those of team-blue"), "{text}");

@@ -45,9 +45,9 @@ impl Refusal {
     /// All reasons, with their user-visible texts.
     const ALL: [(Refusal, &str); 12] = [
         (Refusal::Garbage, "malformed"),
-        (Refusal::Version, "from another version"),
+        (Refusal::Version, "from a different version"),
         (Refusal::Ticket, "with an unknown ticket"),
-        (Refusal::WrongTick, "for another tick"),
+        (Refusal::WrongTick, "for a different tick"),
         (Refusal::NotYours, "about another node's boat"),
         (Refusal::BadNumber, "with a number out of range"),
         (Refusal::Missing, "without an order for a boat"),
@@ -181,7 +181,7 @@ mod tests {
         );
         assert_eq!(
             refusals.to_string(),
-            "2 x malformed, 1 x from another version"
+            "2 x malformed, 1 x from a different version"
         );
         let json = serde_json::to_value(refusals).expect("JSON");
         assert_eq!(

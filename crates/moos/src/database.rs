@@ -49,7 +49,7 @@ pub struct Dropped {
 impl std::fmt::Display for Dropped {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let texts = [
-            (self.wrong_type, "of another type"),
+            (self.wrong_type, "of the wrong type"),
             (self.over_limit, "over a limit"),
             (self.unread, "not read in time"),
             (self.malformed, "malformed"),

@@ -262,8 +262,8 @@ pub(crate) fn check_keys(bus: &Bus) -> Result<(), String> {
             ) =>
         {
             Err(format!(
-                "{}: the keys of {} do not show the true state of the game: start the shoreside in a second `squall moos` \
-                 with the keys of the observer",
+                "{}: the keys of {} give no access to the true state of the game: start the shoreside in a second `squall moos` \
+                 with an observer's keys",
                 keys.folder.display(),
                 keys.identity
             ))

@@ -158,7 +158,7 @@ fn give(
     let content = source.read(body.start..bytes_from)?;
     // The library allocates whatever a length field says before checking that the bytes exist.
     if texts_of(&content, fixed, texts, has_list).is_none() {
-        return Err(damaged(&"a text in it is longer than the record"));
+        return Err(damaged(&"a string in it is longer than the record"));
     }
     let record = mcap::parse_record(opcode, &content).map_err(|e| damaged(&e))?;
     take(record, bytes_from..body.end);
@@ -206,7 +206,7 @@ fn chunk_records(source: &Source, body: &Range<u64>) -> Result<Range<u64>, Recor
         let name = source.read(name_at..name_at + name_length.min(NAME_MAX))?;
         let name = String::from_utf8_lossy(&name);
         return Err(RecordingError::Foreign(format!(
-            "it is compressed ({name}); recordings of Squall are not"
+            "it is compressed ({name}); Squall recordings are not"
         )));
     }
     let from = name_at + name_length + 8;

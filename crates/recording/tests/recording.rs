@@ -432,7 +432,7 @@ fn records_that_say_they_are_longer_than_they_are_do_no_harm() {
             .expect_err("it is damaged")
             .to_string();
         assert!(
-            refused.contains("a text in it is longer than the record"),
+            refused.contains("a string in it is longer than the record"),
             "{opcode}: {refused}"
         );
     }

@@ -213,7 +213,7 @@ fn agreed<T: PartialEq + Serialize>(
 
 /// Neither the metadata nor the user specifies a field.
 fn unsaid(key: &str, said_by: &str) -> String {
-    format!("its metadata has no {key}, expected it there, or {said_by} here")
+    format!("its metadata has no {key}, expected it there or {said_by} here")
 }
 
 fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), String> {

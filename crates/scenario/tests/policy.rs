@@ -89,7 +89,7 @@ fn what_metadata_leave_open_or_contradict_is_refused() {
         ..nothing
     };
     let absent = |key: &str, said_by: &str| {
-        let want = format!("no squall.{key}, expected it there, or {said_by} here");
+        let want = format!("no squall.{key}, expected it there or {said_by} here");
         (without(&format!("squall.{key}")), nothing, want)
     };
     let wrong = |key: &str, value: &str, expected: &str| {

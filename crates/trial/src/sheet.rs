@@ -174,7 +174,7 @@ impl Sheet {
             let words = words(unit);
             let end = format!("_{}", plain_unit(&words));
             if !words.is_empty() && head.contains('_') && !head.ends_with(&end) {
-                let message = format!("{head} has the unit {unit}, expected that of its name");
+                let message = format!("{head} has the unit {unit}, expected the unit in its name");
                 return Err(self.mistake(Some(line), message));
             }
         }
@@ -405,7 +405,7 @@ mod tests {
             ),
             (
                 "t_s,speed_m_s\ns,kn\n0,1\n",
-                "in.csv:2: speed_m_s has the unit kn, expected that of its name",
+                "in.csv:2: speed_m_s has the unit kn, expected the unit in its name",
             ),
             (
                 "x,a\n0,1\n",

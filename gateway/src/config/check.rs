@@ -56,7 +56,7 @@ fn check_geofence(document: &Document<Gateway>) {
         if sides(keep_out).all(|side| distance_to_line(outline, side) > 0.0) {
             document.note(
                 &path(i),
-                "keep_out lies outside the polygon, expected it inside",
+                "keep_out lies outside the polygon; move it inside",
             );
         }
     }

@@ -16,10 +16,10 @@ const ROUND_STEP_DEG: f64 = 90.0 / 8.0;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum GeofenceError {
     /// A keep-out is outside it.
-    #[error("keep_out {0} (the first is 0) lies outside the geofence, expected it inside")]
+    #[error("keep_out {0} (the first is 0) lies outside the geofence; move it inside")]
     KeepOutOutside(usize),
     /// The boat would start where it must not be.
-    #[error("{0} starts outside the geofence or in a keep-out, expected its start position inside")]
+    #[error("{0} must start inside the geofence and outside keep-outs")]
     StartOutside(String),
 }
 

@@ -31,7 +31,7 @@ pub enum NodeError {
         source: std::io::Error,
     },
     /// The port for ArduPilot's firmware cannot be opened.
-    #[error("the SITL port {listen}: {source}; choose another with --listen")]
+    #[error("cannot open the SITL port {listen}: {source}; choose another with --listen")]
     SitlPort {
         /// The address.
         listen: SocketAddr,

@@ -217,7 +217,7 @@ impl Run {
             }
             found.map(Some).with_context(|| {
                 format!(
-                    "{} has no column {name}, expected those of a training run",
+                    "{} has no column {name}, expected the columns of a training run",
                     path.display()
                 )
             })

@@ -86,7 +86,7 @@ const LISTS: [(&str, &str, &str); 10] = [
     ("own_flag, enemy_flag,", "such as CH", "{places}"),
     ("i, mate, enemy, then", "collides", "{events}"),
     (
-        "numbers, texts, true,",
+        "numbers, strings, true,",
         "mates_nearer()",
         "{CEL that is allowed}",
     ),

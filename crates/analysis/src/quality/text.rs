@@ -60,7 +60,7 @@ impl Quality {
         )?;
         writeln!(
             f,
-            "{:NAME$}         mate        enemy   tagger, tagged          all",
+            "{:NAME$}     teammate        enemy   tagger, tagged          all",
             ""
         )?;
         for (strategy, quality) in &self.strategies {

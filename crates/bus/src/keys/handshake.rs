@@ -113,7 +113,7 @@ fn explained(error: &Error, host: &str, identity: &Identity) -> String {
             format!("the sim's certificate has expired: make new keys for all nodes with `squall keys new` ({error})")
         }
         Error::InvalidCertificate(CertificateError::UnknownIssuer | CertificateError::BadSignature) => {
-            "the sim's certificate is from another authority: its keys and these come from different runs of `squall keys new`"
+            "the sim's certificate is from a different authority: its keys and these come from different runs of `squall keys new`"
                 .to_owned()
         }
         Error::InvalidCertificate(_) => format!("the sim's certificate is refused: {error}"),

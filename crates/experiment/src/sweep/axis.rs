@@ -46,7 +46,7 @@ pub struct Axis {
 /// A value of an axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-#[schemars(inline, extend("x-expected" = "a number, a text, true or false"))]
+#[schemars(inline, extend("x-expected" = "a number, a string, true or false"))]
 pub enum AxisValue {
     /// A number.
     Number(f64),

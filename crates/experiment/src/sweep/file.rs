@@ -223,10 +223,10 @@ fn problem_of_values(axis: &Axis, given: &'static str) -> Option<(&'static str, 
         .any(|pair| kind(&pair[0]) != kind(&pair[1]))
     {
         let message =
-            format!("values of {key} have different types, expected all numbers or all texts");
+            format!("values of {key} have different types, expected all numbers or all strings");
         Some(("values", message))
     } else if (1..values.len()).any(|k| values[..k].contains(&values[k])) {
-        let message = format!("values of {key} contains a duplicate, expected unique values");
+        let message = format!("values of {key} contain a duplicate, expected unique values");
         Some(("values", message))
     } else {
         None

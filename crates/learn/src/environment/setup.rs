@@ -158,7 +158,7 @@ impl Setup {
         if let Control::Helm(strategy) = &self.control {
             self.check_helm(strategy)?;
         } else if self.spaces.action == ActionSpace::Options {
-            let allowed = "another action space, or a helm whose strategy declares options";
+            let allowed = "a different action space, or a helm whose strategy declares options";
             return Err(wrong("action", "options", allowed));
         }
         Ok(())
@@ -193,10 +193,10 @@ impl Setup {
         {
             let found = texts(other).unwrap_or_default().join(", ");
             let allowed = format!(
-                "those of the first role: {}",
+                "the options of the first role: {}",
                 self.options().unwrap_or_default().join(", ")
             );
-            return Err(wrong("sets of the second role", found, &allowed));
+            return Err(wrong("`sets` of the second role", found, &allowed));
         }
         Ok(())
     }

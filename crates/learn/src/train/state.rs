@@ -106,7 +106,7 @@ pub enum StateError {
         found: String,
     },
     /// The state is from another training run.
-    #[error("it is the state of another training run: the training file has changed since")]
+    #[error("it is the state of a different training run: the training file has changed since")]
     Other,
     /// A setup cannot be played.
     #[error(transparent)]

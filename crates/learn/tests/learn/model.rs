@@ -209,7 +209,7 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
         (
             &large,
             for_one,
-            "the model has 45 inputs, but a boat in this game has 333 values: it was trained for another team size",
+            "the model has 45 inputs, but a boat in this game has 333 values: it was trained for a different team size",
         ),
     ] {
         let vehicle = VehicleId::at(0);

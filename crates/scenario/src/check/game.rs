@@ -255,7 +255,7 @@ fn check_models(document: &Document<raw::Game>, entries: &[Entry], strategies: &
             let size = model.spec.observation.size(mates, enemies);
             if takes != size {
                 let message = format!(
-                    "the model {} has {takes} inputs, expected {size}: {name} has {mates} mates and {enemies} enemies",
+                    "the model {} has {takes} inputs, expected {size}: {name} has {mates} teammates and {enemies} enemies",
                     model.name
                 );
                 document.note(path, message);

@@ -20,7 +20,7 @@ pub struct Policy {
     pub host: Option<Host>,
     /// Variable that the chosen option sets; the policy then proposes no course or speed.
     #[serde(default)]
-    #[schemars(with = "Option<String>", extend("x-expected" = "the name of a variable with texts"))]
+    #[schemars(with = "Option<String>", extend("x-expected" = "the name of a string variable"))]
     pub sets: Option<u16>,
     /// Whether each action is sampled from the model's probabilities, using the game's seed,
     /// instead of taking the most likely one. Only for a model with logits.

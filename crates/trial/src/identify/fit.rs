@@ -72,7 +72,7 @@ pub enum NoFit {
     #[error("the boat has no {0}")]
     NotThere(&'static str),
     /// No parameters to fit.
-    #[error("no parameter to fit")]
+    #[error("no parameters to fit")]
     Nothing,
     /// No row at which a segment could begin.
     #[error("no row of the log has a value for every measured channel")]

@@ -199,7 +199,7 @@ fn sets(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<O
             let known: Vec<&str> = known.map(|variable| variable.name.as_str()).collect();
             let expected = match known.as_slice() {
                 [] => "a variable with `values`, but [variables] has none".to_owned(),
-                known => format!("one of the variables with texts, {}", listed(&name, known)),
+                known => format!("one of the string variables, {}", listed(&name, known)),
             };
             scope.refuse(&at, &format!("is {name:?}, expected {expected}"))
         }
@@ -256,7 +256,7 @@ fn host(
     };
     let Some(Json::String(host)) = host else {
         return given(&["python", "limit_s"]).map_or(Some(None), |key| {
-            scope.refuse(&key, "is given without host, expected only with it")
+            scope.refuse(&key, "is given without host, which it requires")
         });
     };
     let others = given(&["model", "action", "by"]);
@@ -270,7 +270,8 @@ fn host(
         ObservationSpace::Pyquaticus2026,
     ];
     if observation.is_some_and(|space| !known.contains(&space)) {
-        let expected = "is of another kind, expected pyquaticus or pyquaticus_2026 for an entry";
+        let expected =
+            "is of a different kind, expected pyquaticus or pyquaticus_2026 for an entry";
         return scope.refuse(&format!("{path}.observation"), expected);
     }
     let found = scope.document.resolve(&format!("{path}.host"), &host);
@@ -309,7 +310,7 @@ fn model(
             .into_iter()
             .find(|key| given(key));
         return of_models.map_or(Some(None), |key| {
-            let message = "is given without model, expected only with it";
+            let message = "is given without model, which it requires";
             scope.refuse(&format!("{path}.{key}"), message)
         });
     };

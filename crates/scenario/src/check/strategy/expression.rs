@@ -90,11 +90,11 @@ impl Reader<'_, '_> {
     }
 
     fn not_allowed<T>(&self, part: &IdedExpr, what: &str) -> Option<T> {
-        let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), mates()";
+        let allowed = "numbers, strings, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), mates()";
         let measures = Measure::names().join("(), ");
         self.refuse(
             part,
-            &format!("contains {what}, expected only {allowed} and the measures {measures}()"),
+            &format!("contains {what}; only {allowed} and the measures {measures}() are allowed"),
         )
     }
 
@@ -269,8 +269,8 @@ impl Reader<'_, '_> {
                 (true, false) => (left, self.text(a, b, one, &other[0])?),
                 (false, true) => (self.text(b, a, other, &one[0])?, right),
                 _ => {
-                    let expected = "a text variable and one of its values";
-                    let message = format!("compares two texts, expected {expected}");
+                    let expected = "a string variable and one of its values";
+                    let message = format!("compares two strings, expected {expected}");
                     return self.refuse(part, &message);
                 }
             },
@@ -330,7 +330,7 @@ fn in_words(expression: &Expression, kind: &Kind) -> String {
         Kind::Truth => "true or false".to_owned(),
         Kind::Number => "a number".to_owned(),
         Kind::Text(_) if expression.as_variable().is_some() => "a text".to_owned(),
-        Kind::Text(text) => format!("the text {:?}", text[0]),
+        Kind::Text(text) => format!("the string {:?}", text[0]),
     }
 }
 

@@ -32,7 +32,7 @@ impl ScenarioFile for Strategy {
             }
             None => {
                 if document.has("assignment") {
-                    let message = "assignment is given without roles, expected only with them";
+                    let message = "assignment is given without roles, which it requires";
                     document.note("assignment", message);
                 }
                 vec![program::program(document)?]

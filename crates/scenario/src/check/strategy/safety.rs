@@ -124,7 +124,7 @@ impl Behaviour {
                 ("time_on_leg_s", &task.time_on_leg_s, (1.0, f64::INFINITY)),
             ]
             .to_vec(),
-            _ => return Some("it is of another kind".to_owned()),
+            _ => return Some("it is of a different kind".to_owned()),
         };
         if self.when.is_some() {
             return Some("it has a condition".to_owned());

@@ -72,7 +72,7 @@ fn is_free(scope: &Scope<'_>, path: &str, name: &str) -> bool {
     } else {
         return true;
     };
-    let message = format!("variable is {name:?}, which {taken}, expected another name");
+    let message = format!("variable is {name:?}, which {taken}, expected a different name");
     scope.document.note(path, message);
     false
 }
@@ -93,7 +93,7 @@ fn kind_of(scope: &Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<
         None if has_values => Some((Kind::Text(texts), 0.0)),
         None => {
             if scope.document.is_sound(&initial_path) {
-                let expected = "the allowed texts, or initial with a number or boolean";
+                let expected = "the allowed strings, or initial with a number or boolean";
                 scope.note_missing(&format!("{path}.values"), expected);
             }
             None
@@ -105,7 +105,7 @@ fn kind_of(scope: &Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<
             Some((Kind::Text(texts), initial))
         }
         Some(raw::Value::Text(text)) => {
-            let expected = "the allowed texts as well: values = [...]";
+            let expected = "the allowed strings as well: values = [...]";
             let message = format!("is the string {text:?}, expected {expected}");
             scope.refuse(&initial_path, &message)
         }

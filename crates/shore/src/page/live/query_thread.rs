@@ -172,9 +172,9 @@ impl QueryThread {
                 report: Some(report),
                 ..HelmAnswer::default()
             },
-            Some(Ok(None)) => because(format!("the mind of {name} has no helm")),
+            Some(Ok(None)) => because(format!("the agent of {name} has no helm")),
             Some(Err(_)) => because(format!(
-                "the mind of {name} is running another version of Squall"
+                "the agent of {name} is running a different version of Squall"
             )),
             None => because(format!("no agent is running {name} now")),
         };
