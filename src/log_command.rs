@@ -50,14 +50,14 @@ pub(crate) struct Args {
     /// edges, contacts and circling
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare"])]
     quality: bool,
-    /// Finds the moments that changed the chance of winning most, and what each boat added, from
-    /// futures of the game: about a minute on two cores
+    /// Finds the moments that most changed the chance of winning, and how much each boat contributed,
+    /// by simulating many futures of the game. Takes about a minute on two cores
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare", "quality"])]
     turning_points: bool,
-    /// With --turning-points: number of futures of the game's moments
+    /// With --turning-points: total number of simulated futures
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = whole::<u32>(50, 100_000), requires = "turning_points")]
     futures: u32,
-    /// With --turning-points: the strategy with which each boat is compared
+    /// With --turning-points: strategy that each boat is compared with
     #[arg(
         long,
         value_name = "STRATEGY",

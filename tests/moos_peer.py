@@ -192,7 +192,7 @@ def drive(boat):
     check((boat.values["TAGGED"], boat.values["HAS_FLAG"]) == ("false", "false"), "the boat is free")
     check("label=red" in boat.values["FLAG_SUMMARY"] and boat.values["BLUE_SCORES"] == 0, "flags and score are known")
     boat.comms.notify("TAG_REQUEST", "vname=red_one")
-    boat.wait("a request in another name is rejected",
+    boat.wait("a request in another boat's name is rejected",
               lambda: "rejected_invalid_vehicle_name" in boat.values.get("TAG_RESULT_BLUE_ONE", ""))
     boat.comms.notify("TAG_REQUEST", "vname=blue_one")
     boat.wait("a request out of reach gets no tag", lambda: "tagged=none" in boat.values["TAG_RESULT_BLUE_ONE"])

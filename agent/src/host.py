@@ -92,7 +92,7 @@ class World:
         return int(boat >= self.game["boats"][0])
 
     def _others(self, boat: int) -> list[int]:
-        """The other boats as observations list them: mates first."""
+        """The other boats as observations list them: teammates first."""
         others = [other for other in range(sum(self.game["boats"])) if other != boat]
         return sorted(others, key=lambda other: self._team(other) != self._team(boat))
 
@@ -195,7 +195,7 @@ class World:
             if name.startswith(column) and name[len(column) :] in rows:
                 x_m, y_m = self.width_m * rows[name[len(column) :]] / 8.0, self.depth_m * share
                 return (x_m, y_m) if self.game["team"] == 0 else (self.width_m - x_m, self.depth_m - y_m)
-        raise ValueError(f"the action {name!r} is no point of the field, such as CH")
+        raise ValueError(f"the action {name!r} is not a point of the field, such as CH")
 
     def order(self, action: Any) -> int | list[float]:
         """An entry's answer as one of 17 actions, or a speed in m/s and a turn in degrees.
@@ -287,7 +287,7 @@ class Entry:
     def answer(self, request: Mapping[str, Any]) -> int | list[float]:
         """The entry's action for a request.
 
-        Raises whatever the entry raises, or ValueError if its answer is no action.
+        Raises whatever the entry raises, or ValueError if its answer is not an action.
         """
         world = World(self.game, request)
         # Each boat knows its own observation; those of the others follow from it.

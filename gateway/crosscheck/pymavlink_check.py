@@ -78,7 +78,7 @@ def check(condition, what):
 
 
 def wait_for(link, what, kind, is_it=lambda message: True, limit_s=LIMIT_S):
-    """The first message of a kind that satisfies a condition."""
+    """The first message of the given kind that satisfies a condition."""
     end = time.monotonic() + limit_s
     while time.monotonic() < end:
         message = link.recv_match(type=kind, blocking=True, timeout=0.5)

@@ -143,7 +143,7 @@ class SweepPlan:
 
     @staticmethod
     def unpack(packed: tuple[str, list[tuple[Path, bytes]], str]) -> SweepPlan:
-        """Restores a packed plan without reading files. Raises ValueError if another version of Squall packed it."""
+        """Restores a packed plan without reading files. Raises ValueError if a different version of Squall packed it."""
 
     def pack(self) -> tuple[str, list[tuple[Path, bytes]], str]:
         """Everything that the games need in a process on another machine: the checked sweep as JSON, its files, its digest."""
@@ -166,7 +166,7 @@ class SweepPlan:
         """Creates a study in a new folder. Raises ValueError if there is one already, OSError if it cannot be written."""
 
     def resume(self, folder: str | Path) -> SweepStudy:
-        """Resumes the study in a folder. Raises ValueError if there is none, or if it belongs to another sweep."""
+        """Resumes the study in a folder. Raises ValueError if there is none, or if it belongs to a different sweep."""
 
 class SweepStudy:
     """The results of a sweep in a folder, in the same files as those of `squall sweep`."""
@@ -175,7 +175,7 @@ class SweepStudy:
     """The number of games stored, and the index of the next one."""
 
     def add(self, index: int, game_line: str, boat_lines: str) -> None:
-        """Adds the next game, as from `SweepPlan.lines`. Raises IndexError if it is another game, OSError if it cannot be written."""
+        """Adds the next game, as from `SweepPlan.lines`. Raises IndexError if it is a different game, OSError if it cannot be written."""
 
     def report(self) -> tuple[str, int]:
         """Writes the report of all games so far. Returns a readable summary, and the number of games that could not start."""
@@ -192,7 +192,7 @@ class TournamentPlan:
 
     @staticmethod
     def unpack(packed: tuple[str, list[tuple[Path, bytes]], str]) -> TournamentPlan:
-        """Restores a packed plan without reading files. Raises ValueError if another version of Squall packed it."""
+        """Restores a packed plan without reading files. Raises ValueError if a different version of Squall packed it."""
 
     def pack(self) -> tuple[str, list[tuple[Path, bytes]], str]:
         """Everything that the games need in a process on another machine: the checked file as JSON, its files, its digest."""

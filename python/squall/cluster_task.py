@@ -16,7 +16,7 @@ _plans: dict[str, object] = {}
 def plan_of(packed: Packed, unpack: Callable[[Packed], Plan]) -> Plan:
     """Restores the packed plan.
 
-    Raises ValueError if another version of Squall packed it.
+    Raises ValueError if a different version of Squall packed it.
     """
     *_, digest = packed
     if digest not in _plans:

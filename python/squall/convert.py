@@ -318,7 +318,7 @@ def _chain(layers: list[Layer]) -> list[Layer]:
     if not chain or any(size[1] != following[0] for size, following in zip(sizes, sizes[1:])):
         listed = "; ".join(map(str, chain)) or "none"
         raise ConversionError(
-            f"its layers of the policy are: {listed}, expected a chain in which each takes what the one before gives"
+            f"its layers of the policy are: {listed}, expected a chain in which each takes the outputs of the one before"
         )
     return chain
 

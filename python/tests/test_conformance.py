@@ -113,7 +113,7 @@ def test_frames_are_the_newest_first() -> None:
     )
 
 
-def test_a_boat_has_mates_that_a_strategy_sails() -> None:
+def test_a_boat_has_teammates_that_a_strategy_drives() -> None:
     environment = squall.BoatEnv(mates="strategy_4", game="pyquaticus_2v2", seed=3)
     observation, info = environment.reset(seed=3)
     assert observation.ndim == 1 and info["seed"] == 3 and info["team"] == 1 and info["counts"] is True

@@ -272,7 +272,7 @@ def test_an_exported_policy_plays_the_same_game_as_its_strategy(
         (HEAD + "        import time; time.sleep(1000)\n", "no answer within 100ms", 600),
         (HEAD + "        while True: print('more')\n", "no answer within 100ms", 600),
         (HEAD + "        import os; os._exit(1)\n", "its process has ended", 600),
-        (HEAD + "        return 'nonsense'\n", "the action 'nonsense' is no point of the field", 600),
+        (HEAD + "        return 'nonsense'\n", "the action 'nonsense' is not a point of the field", 600),
         (HEAD + "        return 17 if agent_id == 'agent_1' else 0\n", "expected one of 17", 600),
         (HEAD + "        import os; os.write(4, b'{' * 70000); os.write(4, b'\\n'); return 0\n", "", 0),
         ("import nothing_of_this_name", "cannot be loaded: solution.py:1: ModuleNotFoundError", 600),

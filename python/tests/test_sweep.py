@@ -251,7 +251,7 @@ def test_ctrl_c_leaves_a_folder_that_is_gone_on_with(
 @pytest.mark.cluster
 def test_a_worker_of_another_version_ends_the_sweep_and_keeps_it(cluster: Any, sweep: Path, tmp_path: Path) -> None:
     class Other:
-        """A plan as packed by another version."""
+        """A plan as packed by a different version."""
 
         def __init__(self, plan: SweepPlan) -> None:
             self.games = plan.games

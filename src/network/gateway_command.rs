@@ -19,8 +19,7 @@ enum Command {
     Boat(gateway_cli::Command),
     /// Emulates a boat for a real back seat, using the real boat's sentences.
     Emulate(emulate::Args),
-    /// Simulates a boat for ArduPilot's own firmware in software (SITL), as its JSON physics back
-    /// end.
+    /// Simulates a boat driven by ArduPilot's real firmware, as the JSON physics back end of SITL.
     Sitl(sitl::Args),
 }
 

@@ -37,7 +37,7 @@ struct BridgeArgs {
     /// How long a request for a boat is valid, s of game time
     #[arg(long, value_name = "S", default_value_t = 0.5, value_parser = seconds)]
     ttl_s: f64,
-    /// Hides the true state from ROS 2: no topics with truth, no markers of boats
+    /// Hides the true state from ROS 2: publishes no truth topics and no markers of boats
     #[arg(long)]
     no_truth: bool,
     /// Lets every ROS 2 node pause, resume, step and end the game and release stops, using this

@@ -102,7 +102,7 @@ const MAY_IMPORT: [(&str, &[&str]); 25] = [
         "trial",
         &["primitives", "rules", "scenario", "messages", "sim"],
     ),
-    // `analysis` for the curves below the time line of a replay.
+    // `analysis` for the curves below the timeline of a replay.
     (
         "shore",
         &[

@@ -50,7 +50,7 @@ def main(recording, result_path):
             continue
         if channel.topic == "frame":
             check(len(decoded.vehicles) == len(names), "a frame has a different number of boats")
-            check(decoded.stamp.version == 3, "a frame from another version")
+            check(decoded.stamp.version == 3, "a frame from a different version")
             last, events = decoded, events + len(decoded.events)
             log_times.append(message.log_time)
     check(last is not None and last.over, "the last frame is not the end of the game")

@@ -1,4 +1,4 @@
-// Plots: any quantities of any boats, in a replay and in a game, with one section of the game and one cursor, which the time line shares.
+// Plots: any quantities of any boats, in a replay and in a game, with one section of the game and one cursor, which the timeline shares.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -15,7 +15,7 @@ const PAV01 = scenario('games/pav01_vs_pav01.toml');
 /** A long game is thinned, so a sample may be half a second old: the tolerances of speed and range for that case. */
 const OFF_M_S = 1;
 const OFF_M = 3.2;
-/** A pixel of the time line, s. */
+/** A pixel of the timeline, s. */
 const PIXEL_S = 0.6;
 
 /** Plays and records a game. Returns the address of its replay at its start, and the result. */
@@ -85,7 +85,7 @@ test('values at the cursor are those of the boats, in all plots at once, and a p
   await sight.until('the plots survive a reload', () => document.querySelectorAll('.plot').length === 3 && document.querySelectorAll('.plot-other')[2].value === 'blue_two');
 });
 
-test('a section chosen in a plot applies to all plots and the time line', async (t) => {
+test('a section chosen in a plot applies to all plots and the timeline', async (t) => {
   const sight = await Sight.open(t, browser, (await replay(t)).url, SIZE);
   await sight.press('#show-plots');
   await sight.press('[data-vehicle=red_two]');
@@ -99,7 +99,7 @@ test('a section chosen in a plot applies to all plots and the time line', async 
   const span = await sight.until('a section is chosen', () => squall.span.to_s - squall.span.from_s < 200 && squall.span);
   assert(Math.abs(span.from_s - 150) < 4 && Math.abs(span.to_s - 300) < 4, JSON.stringify(span));
   assert(Math.abs(await sight.get(() => squall.t_s)) < 1, 'choosing a section does not move the replay');
-  // The time line has the same section: its middle is at 225 s.
+  // The timeline has the same section: its middle is at 225 s.
   const line = await sight.page.locator('#timeline').boundingBox();
   await sight.page.mouse.click(line.x + 34 + (line.width - 48) / 2, line.y + 20);
   await sight.until('the replay is in the middle of the section', () => Math.abs(squall.t_s - 225) < 3);
@@ -113,7 +113,7 @@ test('a section chosen in a plot applies to all plots and the time line', async 
   await sight.until('the whole game is shown', () => squall.span.from_s === 0 && Math.abs(squall.span.to_s - 600) < 1e-6);
 });
 
-test('the time line shows time, score and event under the pointer, has a scale, and zooms', async (t) => {
+test('the timeline shows time, score and event under the pointer, has a scale, and zooms', async (t) => {
   const { url, result } = await replay(t);
   const sight = await Sight.open(t, browser, url, { ...SIZE, allows: /willReadFrequently/ });
   await sight.until('the score is known', () => {

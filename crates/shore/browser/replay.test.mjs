@@ -12,7 +12,7 @@ after(() => browser.close());
 
 /** A time after an event, and before the next one, s. */
 const JUST_AFTER_S = 0.3;
-/** Tolerance of a time chosen by a pixel of the time line, s. */
+/** Tolerance of a time chosen by a pixel of the timeline, s. */
 const PIXEL_S = 0.6;
 
 const pav01 = scenario('games/pav01_vs_pav01.toml');
@@ -38,7 +38,7 @@ function standing(result, rules, t_s) {
   return { carrier, score };
 }
 
-/** Presses the time line at a time. */
+/** Presses the timeline at a time. */
 async function scrub(sight, t_s) {
   const box = await sight.page.locator('#timeline').boundingBox();
   const { from_s, to_s } = await sight.get(() => squall.player);
@@ -80,7 +80,7 @@ test('a recording agrees with its events at every moment', async (t) => {
   assert.deepEqual(await sight.get(() => squall.score), names.map((name) => result.score.teams[name]));
 });
 
-test('the chance of winning is on the time line once it is known', async (t) => {
+test('the chance of winning is on the timeline once it is known', async (t) => {
   const { file } = await record(t, 'strategy_4_vs_3', '--set', 'game.duration_s=60');
   await squall(t, 'log', file, '--turning-points', '--futures', '50');
   const { curve, teams } = readJson(file.replace('.mcap', '.turning-points.json'));

@@ -247,7 +247,7 @@ export class Game {
   takeEvents(message) {
     if (message.reset) this.events = [];
     for (const event of message.events ?? []) this.events.push(event);
-    // The time line of a replay needs all of them, and gets them only once.
+    // The timeline of a replay needs all of them, and gets them only once.
     if (this.mode === 'live' && this.events.length > EVENTS_MAX) this.events.splice(0, this.events.length - EVENTS_MAX);
     this.eventVersion += 1;
   }

@@ -19,7 +19,7 @@ const HELP = [
     ['gamepad', PAD]]],
   ['A replay', [['n  p', 'next or previous event'], [KINDS.map(([, key]) => key).join('  '),
     `next among ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift: previous`],
-    ['Shift+s', 'step one decision back'], ['left, right', 'one second back or forward (with Shift: ten)'], ['wheel', 'zoom the time line or the plots; on the time line also + and −, 0 for the whole game']]],
+    ['Shift+s', 'step one decision back'], ['left, right', 'one second back or forward (with Shift: ten)'], ['wheel', 'zoom the timeline or the plots; on the timeline also + and −, 0 for the whole game']]],
 ];
 
 /** Whether the element handles keys itself: fields and lists. */

@@ -19,7 +19,7 @@
 //   background                    whether an image or a shoreline is shown beneath the field
 //   drawn, fps, draw_ms           frames drawn; pictures per second; mean time to draw a picture
 //   view                          { x, y, scale, up_deg }: centre, pixels per metre, and the bearing that is up
-//   span                          { from_s, to_s, pointed_s }: the section that the time line shows, and the moment pointed at, or null
+//   span                          { from_s, to_s, pointed_s }: the section that the timeline shows, and the moment pointed at, or null
 //   measured                      { range_m, bearing_deg }; null before two ends are chosen
 //
 // Elements with stable ids: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,

@@ -1,4 +1,4 @@
-// The panels around the chart: dragged or moved by keys to another size, and hidden. Sizes are stored.
+// The panels around the chart: resized by dragging or with keys, and hidden. Sizes are stored.
 
 import { keep, recallObject } from './storage.js';
 import { make, show } from './words.js';
@@ -55,7 +55,7 @@ export class Panels {
   /** The edge of a panel, which changes its size. */
   handle(panel) {
     const handle = make('div', `splitter splitter-${panel.axis.toLowerCase()}`);
-    Object.assign(handle, { tabIndex: 0, id: `${panel.id}-edge`, title: 'Drag to resize; double click for the usual size' });
+    Object.assign(handle, { tabIndex: 0, id: `${panel.id}-edge`, title: 'Drag to resize; double-click for the usual size' });
     handle.setAttribute('role', 'separator');
     handle.setAttribute('aria-label', `Size of the panel: ${panel.name}`);
     handle.setAttribute('aria-controls', panel.id);

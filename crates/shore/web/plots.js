@@ -1,5 +1,5 @@
 // Plots of boats over the game, below the chart: any quantities of any boats, with the section and the current time of
-// the time line.
+// the timeline.
 
 import { Curves } from './curves.js';
 import { History } from './history.js';
@@ -51,7 +51,7 @@ export class Plots {
       this.changed();
     });
     this.whole = make('button', '', 'Whole game');
-    Object.assign(this.whole, { type: 'button', title: 'Show the whole game (double click)' });
+    Object.assign(this.whole, { type: 'button', title: 'Show the whole game (double-click)' });
     this.whole.addEventListener('click', () => this.on.span.showAll());
     this.box = make('div', 'plot-grid');
     this.place.append(make('div', 'plots-head', '', this.chips, this.chooser, this.more, this.whole), this.box);

@@ -1,4 +1,4 @@
-// The section of the game that the time line and the plots show, and the moment pointed at in either.
+// The section of the game that the timeline and the plots show, and the moment pointed at in either.
 
 /** Minimum length of a section, s. */
 const LEAST_S = 2;

@@ -1,4 +1,4 @@
-// The time line of a replay: the current moment, the events, and ways to reach them.
+// The timeline of a replay: the current moment, the events, and ways to reach them.
 
 import { sampleAt, ticksOf } from './diagram.js';
 import { palette } from './palette.js';
@@ -16,12 +16,12 @@ export const KINDS = [
 const ANY = 'any';
 /** Minimum time between two seeks while scrubbing, ms. */
 const SEEK_MS = 50;
-/** Space beside the time line: on the left for the scale of the score, px. */
+/** Space beside the timeline: on the left for the scale of the score, px. */
 const LEFT = 34;
 const RIGHT = 14;
 /** Rows of marks, one for each kind, above the score, px. */
 const LANE_TOP = 8;
-/** The height of a row on a time line of usual height, and on a low one. */
+/** The height of a row on a timeline of usual height, and on a low one. */
 const LANE = 9;
 const LANE_LOW = 7;
 const LOW_PX = 100;
@@ -264,7 +264,7 @@ export class Timeline {
     event.stopPropagation();
   }
 
-  /** Goes to the next (1) or previous (-1) event of a kind: its index, or any. */
+  /** Goes to the next (1) or previous (-1) event of the given kind: its index, or any. */
   jump(kind, way) {
     if (this.game?.mode !== 'replay') return;
     const marks = kind === ANY ? this.marks : this.marks.filter((mark) => mark.kind === Number(kind));

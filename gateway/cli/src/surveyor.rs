@@ -49,7 +49,7 @@ pub struct Args {
     /// Report of a passed `gateway check --vehicle`, needed to arm if the gateway file requires it
     #[arg(long, value_name = "FILE")]
     preflight: Option<PathBuf>,
-    /// Arms without a pre-flight report, on the responsibility of this person
+    /// Arms without a pre-flight report, under the responsibility of this person
     #[arg(long, value_name = "PERSON", conflicts_with = "preflight")]
     without_preflight: Option<String>,
     /// Records to this file [default: runs/gateway-NAME-UTC.mcap]

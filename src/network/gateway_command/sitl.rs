@@ -13,7 +13,7 @@ pub(crate) struct Args {
     /// Name of the vehicle in the game; the firmware becomes its agent
     #[arg(long, value_name = "NAME")]
     vehicle: String,
-    /// Address where the firmware sends its servo outputs, by UDP; instance N of SITL uses port
+    /// Address to which the firmware sends its servo outputs, by UDP; instance N of SITL uses port
     /// 9002 + 10 N
     #[arg(long, value_name = "IP:PORT", default_value = "127.0.0.1:9002", value_parser = address)]
     listen: SocketAddr,
@@ -23,7 +23,7 @@ pub(crate) struct Args {
     /// Servo output of the starboard thruster (function 74, ThrottleRight)
     #[arg(long, value_name = "CHANNEL", default_value_t = 3, value_parser = whole::<usize>(1, Servos::CHANNEL_MAX))]
     starboard_servo: usize,
-    /// Pulse lengths of full astern, zero and full ahead, µs: SERVOn_MIN, _TRIM and _MAX. A
+    /// Pulse widths for full astern, zero and full ahead, µs: SERVOn_MIN, _TRIM and _MAX. A
     /// BlueBoat has 1100,1500,1900
     #[arg(long, value_name = "US,US,US", default_value = "1000,1500,2000", value_parser = pulses)]
     pulse_us: Pulses,

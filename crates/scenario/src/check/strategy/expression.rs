@@ -296,7 +296,7 @@ impl Reader<'_, '_> {
     ) -> Option<Expression> {
         let name = match &variable.expr {
             Expr::Ident(name) => name,
-            _ => "a text",
+            _ => "a string",
         };
         let wrong = |allowed| format!("compares {name} with {text:?}, {allowed}");
         let refuse = |allowed| self.refuse(part, &wrong(allowed));
@@ -329,7 +329,7 @@ fn in_words(expression: &Expression, kind: &Kind) -> String {
     match kind {
         Kind::Truth => "true or false".to_owned(),
         Kind::Number => "a number".to_owned(),
-        Kind::Text(_) if expression.as_variable().is_some() => "a text".to_owned(),
+        Kind::Text(_) if expression.as_variable().is_some() => "a string".to_owned(),
         Kind::Text(text) => format!("the string {:?}", text[0]),
     }
 }

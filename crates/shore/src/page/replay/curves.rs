@@ -1,4 +1,4 @@
-//! The curves of a recorded game over time, for the plots below the time line.
+//! The curves of a recorded game over time, for the plots below the timeline.
 
 use crate::page::message::{BoatCurves, Curves, PageMessage};
 use analysis::{GameSeries, Sample};
