@@ -125,9 +125,9 @@ class TeamEnv(_GameEnv):
 class BoatEnv(_GameEnv):
     """One game, in which an action controls one boat.
 
-    A strategy controls its teammates, so that only one agent learns. The seed selects the boat: consecutive seeds take the
-    boats in turn. To train a policy for all boats of a team, prefer `VectorEnv`, which has a row for each. `info` is that of `TeamEnv`, with a
-    single truth value in `counts` and a single row in `action_mask`.
+    A strategy controls its teammates, so that only one agent learns. The seed selects the boat: consecutive seeds take the boats in turn.
+    To train a policy for all boats of a team, prefer `VectorEnv`, which has a row for each. `info` is that of `TeamEnv`, with a single
+    truth value in `counts` and a single row in `action_mask`.
     """
 
     def __init__(
