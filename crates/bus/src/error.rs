@@ -66,7 +66,7 @@ pub enum BusError {
     )]
     Threads(String),
     /// The game has keys, and this node has none.
-    #[error("{0} uses TLS: the game has keys, pass yours with --keys FOLDER (see `squall keys`)")]
+    #[error("{0} uses TLS: the game has keys; pass yours with --keys FOLDER (see `squall keys`)")]
     NeedsKeys(String),
     /// A node with this certificate has no right to this query.
     #[error("the keys of {identity} do not allow this: use an operator's keys")]

@@ -22,7 +22,7 @@ pub enum DecodeError {
         found: Vec<u8>,
     },
     /// The sender has another version of this message.
-    #[error("{schema} is version {found}, this program reads version {expected}")]
+    #[error("{schema} has version {found}; this program reads version {expected}")]
     Version {
         /// The message's name.
         schema: &'static str,

@@ -43,7 +43,7 @@ pub enum RecordingError {
         found: Kind,
     },
     /// It was recorded by another version, whose messages may differ in meaning.
-    #[error("recorded by Squall {found}, this is {ours}", ours = primitives::VERSION)]
+    #[error("recorded by Squall {found}; this is {ours}", ours = primitives::VERSION)]
     Version {
         /// The recorder's version.
         found: String,

@@ -69,7 +69,7 @@ impl Membership {
             let theirs = &request.version;
             let ours = primitives::VERSION;
             return refused(format!(
-                "the {role} is Squall {theirs}, the sim is Squall {ours}: use the same version"
+                "the {role} is Squall {theirs}; the sim is Squall {ours}: use the same version"
             ));
         }
         // A node must join for at least one vehicle: lockstep would wait for a node without any.
