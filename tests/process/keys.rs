@@ -195,7 +195,7 @@ fn who_has_the_wrong_keys_is_told_so_and_everybody_with_keys_may_stop_the_boats(
             refused(with(&["agent", "--vehicle", "blue_one"], &of("observer"))),
             "are not for the agent of blue_one",
         ),
-        (refused(with(&["watch"], &of("sim"))), "only serve games"),
+        (refused(with(&["watch"], &of("sim"))), "only for serving"),
         (
             refused(with(&["watch"], &folder)),
             "this folder contains the bundles gateway, observer, operator, sim",
