@@ -1,14 +1,14 @@
-//! `squall whatif`: what would have happened after a given time of a recorded game with other
-//! minds.
+//! `squall whatif`: what would have happened after a given time of a recorded game with other minds
+//! or in another sea.
 
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
-use crate::water_args::within;
+use crate::water_args::{self, within};
 use crate::{output_file, recording_file, scenario_files, screen, stop};
 use anyhow::{Context, Result, bail, ensure};
 use command_line::explain::UsageError;
 use command_line::number::whole;
-use experiment::whatif::{self, Past};
+use experiment::whatif::{self, Changes, Future, Past};
 use experiment::{Estimate, Game};
 use messages::input::Inputs;
 use primitives::{SimTime, VehicleId};
@@ -40,6 +40,9 @@ pub(crate) struct Args {
     /// Strategy that one boat continues with; may be repeated
     #[arg(long, value_name = "NAME=STRATEGY", value_parser = boat_and_strategy)]
     vehicle: Vec<(String, String)>,
+    /// Sea from that time on: a file or a name, such as gale
+    #[arg(long, value_name = "SEA", value_parser = scenario_files::file_of(Kind::SEA))]
+    sea: Option<PathBuf>,
     /// Number of futures
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = whole::<u32>(5, 100_000))]
     futures: u32,
@@ -67,8 +70,10 @@ struct Compared<'a> {
     game: &'a str,
     at_s: f64,
     teams: [&'a str; 2],
-    /// Each future's game, as recorded and with the changes.
-    futures: &'a [[Game; 2]],
+    /// Means of all quantities with 95 % intervals.
+    quantities: &'a [Row<'a>],
+    /// Each future, as recorded and with the changes.
+    futures: &'a [[Future; 2]],
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -76,7 +81,20 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let recording = recording_file::open(&file, "play on")?;
     let past = past_at(&recording, args.at)
         .with_context(|| format!("cannot continue {}", file.display()))?;
-    let changes = changes(args, &past)?;
+    let teams = [("blue", &args.blue), ("red", &args.red)];
+    let teams = teams
+        .iter()
+        .filter_map(|(team, strategy)| Some((*team, strategy.as_deref()?)));
+    let boats = args
+        .vehicle
+        .iter()
+        .map(|(boat, strategy)| (boat.as_str(), strategy.as_str()));
+    let sea = args.sea.as_deref();
+    let changes = changes(&past, teams, boats, sea)?;
+    ensure!(
+        !changes.minds.is_empty() || changes.sea.is_some(),
+        UsageError("nothing would change, expected --blue, --red, --vehicle or --sea".to_owned())
+    );
     for path in args.json.iter().chain(&args.record) {
         output_file::check(path, "the result")?;
     }
@@ -85,9 +103,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let threads = args.jobs.threads(count);
     let mut progress = Progress::of(count as u64, "futures");
     let mut futures = vec![];
-    let played = whatif::compare(&past, &changes, count, (threads, &stop), |games| {
+    let played = whatif::compare(&past, &changes, count, (threads, &stop), |future| {
         progress.add();
-        futures.push(games);
+        futures.push(future);
         Ok(())
     });
     progress.end();
@@ -97,12 +115,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let name = recording.header().game.as_str();
     let teams = [0, 1].map(|team| past.scenario.teams[team].name.as_str());
-    screen::print(&text(name, args.at, teams, &futures));
+    let quantities = rows(teams, &futures);
+    screen::print(&text(name, args.at, futures.len(), &quantities));
     if let Some(path) = &args.json {
         let compared = Compared {
             game: name,
             at_s: args.at,
             teams,
+            quantities: &quantities,
             futures: &futures,
         };
         output_file::write_json(path, "the result", &compared)?;
@@ -146,7 +166,7 @@ pub(crate) fn past(recording: &Recording) -> Result<Past> {
 }
 
 /// The recorded game up to the first decision at or after a time.
-fn past_at(recording: &Recording, at_s: f64) -> Result<Past> {
+pub(crate) fn past_at(recording: &Recording, at_s: f64) -> Result<Past> {
     let past = past(recording)?;
     let end_s = past.until.as_s();
     ensure!(
@@ -163,23 +183,25 @@ fn past_at(recording: &Recording, at_s: f64) -> Result<Past> {
     })
 }
 
-/// The boats that continue with other strategies.
-fn changes(args: &Args, past: &Past) -> Result<Vec<(VehicleId, Box<Strategy>)>> {
-    let vehicles = &past.scenario.vehicles;
-    let teams = [("blue", &args.blue), ("red", &args.red)];
-    let of_teams = teams
-        .into_iter()
-        .filter_map(|(team, strategy)| Some((team, strategy.as_ref()?)));
-    let mut changes = vec![];
+/// The changes: strategies by team and by boat, and the file of the sea.
+pub(crate) fn changes<'a>(
+    past: &Past,
+    teams: impl Iterator<Item = (&'a str, &'a str)>,
+    boats: impl Iterator<Item = (&'a str, &'a str)>,
+    sea: Option<&Path>,
+) -> Result<Changes> {
+    let scenario = &past.scenario;
+    let vehicles = &scenario.vehicles;
+    let mut minds = vec![];
     let mut change = |key: &str, name: &str, strategy: &str, are: &dyn Fn(VehicleId) -> bool| {
         let path = scenario_files::find(strategy, Kind::STRATEGY)?;
         let strategy = load_file::<Strategy>(&path)?;
         let boats = (0..vehicles.len())
             .map(VehicleId::at)
             .filter(|boat| are(*boat));
-        let before = changes.len();
-        changes.extend(boats.map(|boat| (boat, Box::new(strategy.clone()))));
-        if changes.len() == before {
+        let before = minds.len();
+        minds.extend(boats.map(|boat| (boat, Box::new(strategy.clone()))));
+        if minds.len() == before {
             let known: Vec<&str> = vehicles
                 .iter()
                 .map(|vehicle| vehicle.name.as_str())
@@ -191,31 +213,27 @@ fn changes(args: &Args, past: &Past) -> Result<Vec<(VehicleId, Box<Strategy>)>> 
         }
         Ok(())
     };
-    for (team, strategy) in of_teams {
+    for (team, strategy) in teams {
         change("the team", team, strategy, &|boat| {
-            past.scenario.teams[past.scenario.team_of(boat).index()].name == team
+            scenario.teams[scenario.team_of(boat).index()].name == team
         })?;
     }
-    for (name, strategy) in &args.vehicle {
+    for (name, strategy) in boats {
         change("--vehicle", name, strategy, &|boat| {
             vehicles[boat.index()].name == *name
         })?;
     }
-    ensure!(
-        !changes.is_empty(),
-        UsageError("nothing would change, expected --blue, --red or --vehicle".to_owned())
-    );
-    Ok(changes)
-}
-
-/// A team's lead over the other in a game, points.
-fn margin(game: &Game) -> i64 {
-    i64::from(game.score[0]) - i64::from(game.score[1])
+    let sea = sea.map(|path| water_args::sea(path, scenario.seed));
+    Ok(Changes {
+        minds,
+        sea: sea.transpose()?,
+    })
 }
 
 /// The future in which the changes alter the result most.
-fn most_affected(futures: &[[Game; 2]]) -> usize {
-    let by = |games: &[Game; 2]| (margin(&games[1]) - margin(&games[0])).abs();
+fn most_affected(futures: &[[Future; 2]]) -> usize {
+    let by =
+        |[before, after]: &[Future; 2]| (after.game.margin() - before.game.margin()).unsigned_abs();
     (0..futures.len())
         .rev()
         .max_by_key(|i| by(&futures[*i]))
@@ -255,55 +273,74 @@ fn of(game: &Game, team: usize, count: fn(&Counts) -> u32) -> f64 {
     f64::from(count(&game.counts[team]))
 }
 
-/// The table of all quantities, with 95 % intervals.
-fn text(name: &str, at_s: f64, teams: [&str; 2], futures: &[[Game; 2]]) -> String {
-    let mut text = format!(
-        "{} futures of {name} from {at_s} s on, each with the same random numbers for both columns\n\n\
-         {:<22}{:>16}{:>16}{:>18}\n",
-        futures.len(),
-        "a game, ± 95 %",
-        "as recorded",
-        "changed",
-        "difference"
-    );
-    for (team, team_name) in teams.iter().enumerate() {
+/// A quantity of a team per game.
+#[derive(Serialize)]
+pub(crate) struct Row<'a> {
+    team: &'a str,
+    quantity: &'static str,
+    /// Whether it is a fraction of all games.
+    is_share: bool,
+    recorded: Estimate,
+    changed: Estimate,
+    difference: Estimate,
+}
+
+/// All quantities of both teams.
+pub(crate) fn rows<'a>(teams: [&'a str; 2], futures: &[[Future; 2]]) -> Vec<Row<'a>> {
+    let mut rows = vec![];
+    for (team, name) in teams.into_iter().enumerate() {
         for (quantity, value, is_share) in QUANTITIES {
-            let column = |of: &dyn Fn(&[Game; 2]) -> f64, sign: &str| {
-                let all: Vec<f64> = futures.iter().map(of).collect();
-                let estimate = Estimate::of(&all);
-                let (times, unit, digits) = if is_share {
-                    (100.0, " %", 0)
-                } else {
-                    (1.0, "", 2)
-                };
-                let mean = estimate.mean * times;
-                let half = estimate.half_width().unwrap_or(f64::NAN) * times;
-                let sign = if mean > 0.0 { sign } else { "" };
-                format!("{sign}{mean:.digits$} ± {half:.digits$}{unit}")
+            let estimate = |of: &dyn Fn([&Game; 2]) -> f64| {
+                let each = futures.iter().map(|[a, b]| of([&a.game, &b.game]));
+                Estimate::of(&each.collect::<Vec<_>>())
             };
-            text += &format!(
-                "{:<22}{:>16}{:>16}{:>18}\n",
-                format!("{team_name} {quantity}"),
-                column(&|games| value(&games[0], team), ""),
-                column(&|games| value(&games[1], team), ""),
-                column(
-                    &|games| value(&games[1], team) - value(&games[0], team),
-                    "+"
-                )
-            );
+            rows.push(Row {
+                team: name,
+                quantity,
+                is_share,
+                recorded: estimate(&|[recorded, _]| value(recorded, team)),
+                changed: estimate(&|[_, changed]| value(changed, team)),
+                difference: estimate(&|[recorded, changed]| {
+                    value(changed, team) - value(recorded, team)
+                }),
+            });
         }
+    }
+    rows
+}
+
+/// The table of all quantities, with 95 % intervals.
+fn text(name: &str, at_s: f64, futures: usize, rows: &[Row<'_>]) -> String {
+    let mut text = format!(
+        "{futures} futures of {name} from {at_s} s on, each with the same random numbers for both columns\n\n\
+         {:<22}{:>16}{:>16}{:>18}\n",
+        "a game, ± 95 %", "as recorded", "changed", "difference"
+    );
+    for row in rows {
+        let (times, unit, digits) = if row.is_share {
+            (100.0, " %", 0)
+        } else {
+            (1.0, "", 2)
+        };
+        let column = |estimate: &Estimate, sign: &str| {
+            let mean = estimate.mean * times;
+            let half = estimate.half_width().unwrap_or(f64::NAN) * times;
+            let sign = if mean > 0.0 { sign } else { "" };
+            format!("{sign}{mean:.digits$} ± {half:.digits$}{unit}")
+        };
+        text += &format!(
+            "{:<22}{:>16}{:>16}{:>18}\n",
+            format!("{} {}", row.team, row.quantity),
+            column(&row.recorded, ""),
+            column(&row.changed, ""),
+            column(&row.difference, "+")
+        );
     }
     text
 }
 
 /// Plays a future again and records it.
-fn record(
-    path: &Path,
-    name: &str,
-    past: &Past,
-    changes: whatif::Changes<'_>,
-    future: usize,
-) -> Result<()> {
+fn record(path: &Path, name: &str, past: &Past, changes: &Changes, future: usize) -> Result<()> {
     // If the file did not exist, `check` has created and removed it; nothing is overwritten.
     let file =
         NewFile::create(path).with_context(|| format!("cannot record to {}", path.display()))?;
@@ -330,5 +367,10 @@ fn record(
         "future {future} is affected most by the changes; show it with: squall replay {}",
         path.display()
     ));
+    if changes.sea.is_some() {
+        screen::remark(
+            "its sea changes at that moment, so `squall replay --check` reports a difference there",
+        );
+    }
     Ok(())
 }

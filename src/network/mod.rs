@@ -15,6 +15,7 @@ mod moos_command;
 mod pace_args;
 mod page_args;
 mod replay_command;
+mod replay_futures;
 mod replay_helms;
 mod ros_command;
 mod run_command;

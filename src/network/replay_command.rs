@@ -2,6 +2,7 @@
 //! pictures again.
 
 use super::page_args::PageArgs;
+use super::replay_futures::ReplayFutures;
 use super::replay_helms::ReplayHelms;
 use crate::replay_command;
 use crate::{recording_file, screen, stop};
@@ -9,7 +10,7 @@ use anyhow::{Result, bail};
 use command_line::explain::UsageError;
 use experiment::turning::{Point, Report};
 use serde_json::{Value, json};
-use shore::page::replay::{Recorded, ReplayView};
+use shore::page::replay::{Futures, Recorded, ReplayView};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -52,10 +53,12 @@ pub(crate) fn open(file: &Path, about: Option<String>) -> Result<ReplayView> {
         .iter()
         .for_each(|remark| screen::remark(remark));
     recorded.chances = chances(file);
-    Ok(ReplayView::about(
+    let futures = ReplayFutures::new(&recording);
+    Ok(ReplayView::new(
         about,
         Arc::new(recorded),
         Some(Box::new(ReplayHelms::new(recording))),
+        futures.map(|futures| Box::new(futures) as Box<dyn Futures>),
     ))
 }
 

@@ -39,6 +39,11 @@ impl Game {
             digest: outcome.digest,
         }
     }
+
+    /// The first team's lead over the second, points.
+    pub fn margin(&self) -> i64 {
+        i64::from(self.score[0]) - i64::from(self.score[1])
+    }
 }
 
 /// Whether either flag asks to stop.

@@ -3,7 +3,7 @@
 
 use crate::Estimate;
 use crate::pipeline::{Game, play_in_order};
-use crate::whatif::{Moment, Past, future_of, seed_of};
+use crate::whatif::{Changes, Moment, Past, future_of, seed_of};
 use agent::MindRunner;
 use messages::helm::HelmReport;
 use parking_lot::Mutex;
@@ -199,13 +199,14 @@ impl Course {
         let Course {
             moments, values, ..
         } = self;
+        let none = Changes::default();
         play_in_order(
             futures.len(),
             run,
             |(), i, stop| {
                 let (moment, future) = futures[i];
                 let seed = seed_of(past, future);
-                let game = future_of(&past.scenario, &moments[moment], (seed, &[]), stop)?;
+                let game = future_of(&past.scenario, &moments[moment], (seed, &none), stop)?.game;
                 Ok::<_, String>((moment, game))
             },
             |played| {
@@ -397,16 +398,19 @@ fn boats(
         plan.futures_of_boat * (count + 1),
         run,
         |(), i, stop| {
-            let changes = (i % (count + 1)).checked_sub(1).map(|boat| {
+            let replaced = (i % (count + 1)).checked_sub(1).map(|boat| {
                 let baseline = Box::new(plan.baseline.clone());
-                [(VehicleId::at(boat), baseline)]
+                (VehicleId::at(boat), baseline)
             });
+            let changes = Changes {
+                minds: replaced.into_iter().collect(),
+                sea: None,
+            };
             let seed = seed_of(past, i / (count + 1));
-            let changes = changes.as_ref().map_or(&[][..], |changes| &changes[..]);
-            future_of(&past.scenario, start, (seed, changes), stop)
+            future_of(&past.scenario, start, (seed, &changes), stop)
         },
         |game| {
-            games.push(game?);
+            games.push(game?.game);
             tell();
             Ok::<_, String>(())
         },
@@ -428,7 +432,7 @@ fn boats(
             vehicle: past.scenario.vehicles[boat].name.clone(),
             team: past.scenario.teams[team.index()].name.clone(),
             chance: difference(|game| value(game.winner)),
-            margin: difference(|game| f64::from(game.score[0]) - f64::from(game.score[1])),
+            margin: difference(|game| game.margin() as f64),
         }
     };
     Ok((0..count).map(added).collect())

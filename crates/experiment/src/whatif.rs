@@ -8,7 +8,9 @@ use parking_lot::Mutex;
 use primitives::reseed::Reseed;
 use primitives::{SimTime, VehicleId};
 use scenario::Scenario;
+use scenario::sea::Sea;
 use scenario::strategy::Strategy;
+use serde::Serialize;
 use sim::{Contest, NoStart};
 use std::num::NonZeroUsize;
 use std::sync::atomic::AtomicBool;
@@ -24,8 +26,66 @@ pub struct Past {
     pub until: SimTime,
 }
 
-/// Boats that continue with other minds, and the strategies that these follow.
-pub type Changes<'a> = &'a [(VehicleId, Box<Strategy>)];
+/// What differs from the recorded game after the moment.
+#[derive(Clone, Debug, Default)]
+pub struct Changes {
+    /// Boats that continue with other minds, and the strategies that these follow.
+    pub minds: Vec<(VehicleId, Box<Strategy>)>,
+    /// The sea, if it changes.
+    pub sea: Option<Sea>,
+}
+
+/// A future of a recorded game.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Future {
+    /// The whole game.
+    #[serde(flatten)]
+    pub game: Game,
+    /// The score from the moment on, at each change: time, s, and points of both teams.
+    pub scores: Vec<(f64, [u32; 2])>,
+}
+
+impl Future {
+    /// The score at a time, or that of the moment before it.
+    fn score_at(&self, at_s: f64) -> [u32; 2] {
+        let after = self.scores.partition_point(|(since_s, _)| *since_s <= at_s);
+        self.scores[after.saturating_sub(1)].1
+    }
+}
+
+/// Quantiles of a [`Fan`]: the median, and the bounds of the middle 50 and 90 %.
+pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+
+/// A team's points over time in many futures, for a fan chart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fan {
+    /// For each of [`QUANTILES`], the points at every time.
+    pub points: [Vec<u32>; 5],
+}
+
+impl Fan {
+    /// A team's fan at these times. Without futures it is empty.
+    pub fn of<'a>(
+        futures: impl Iterator<Item = &'a Future> + Clone,
+        team: usize,
+        times_s: &[f64],
+    ) -> Fan {
+        let mut points: [Vec<u32>; 5] = Default::default();
+        for at_s in times_s {
+            let mut all: Vec<u32> = futures
+                .clone()
+                .map(|future| future.score_at(*at_s)[team])
+                .collect();
+            all.sort_unstable();
+            for (points, share) in points.iter_mut().zip(QUANTILES) {
+                // The nearest rank, so that the chart shows scores that occurred.
+                let rank = (share * all.len() as f64).ceil() as usize;
+                points.extend(all.get(rank.saturating_sub(1)));
+            }
+        }
+        Fan { points }
+    }
+}
 
 /// A game at a moment, with its minds. It continues any number of times.
 pub(crate) struct Moment {
@@ -72,14 +132,17 @@ impl Moment {
         })
     }
 
-    /// Lets boats continue with other minds, and plays to the end, or until `watch`, which sees the
-    /// contest before every decision and at the end, returns `false`.
+    /// Makes the changes and plays to the end, or until `watch`, which sees the contest before
+    /// every decision and at the end, returns `false`.
     pub(crate) fn end(
         mut self,
-        changes: Changes<'_>,
+        changes: &Changes,
         mut watch: impl FnMut(&mut Contest) -> bool,
-    ) -> Contest {
-        for (vehicle, strategy) in changes {
+    ) -> Result<Contest, NoStart> {
+        if let Some(sea) = &changes.sea {
+            self.contest = self.contest.in_sea(sea)?;
+        }
+        for (vehicle, strategy) in &changes.minds {
             let mind = agent::mind_by(self.contest.scenario(), *vehicle, strategy);
             self.runner.replace(*vehicle, mind);
         }
@@ -87,7 +150,7 @@ impl Moment {
             arena::decide(&mut self.contest, &mut self.runner);
             self.contest.advance();
         }
-        self.contest
+        Ok(self.contest)
     }
 }
 
@@ -99,13 +162,13 @@ fn fork(runner: &MindRunner) -> Result<MindRunner, String> {
 
 /// Plays the past and one of its futures, in which everything is drawn by `seed`. Stops when
 /// `watch`, which sees the contest before every decision and at the end, returns `false`. Returns
-/// the contest. Its scenario has the seed, so that a recording of it replays.
+/// the contest. Its scenario has the seed, so that a recording of it replays, except in another sea.
 ///
 /// # Errors
 /// If the game cannot start.
 pub fn play(
     past: &Past,
-    changes: Changes<'_>,
+    changes: &Changes,
     seed: u64,
     mut watch: impl FnMut(&mut Contest) -> bool,
 ) -> Result<Contest, NoStart> {
@@ -115,20 +178,20 @@ pub fn play(
         seed,
     });
     let moment = Moment::of(&past, |contest, _| watch(contest))?;
-    Ok(moment.end(changes, watch))
+    moment.end(changes, watch)
 }
 
 /// Plays futures numbered from 0: each as recorded and with the changes, both with the same random
-/// numbers. Passes the games to `take` in order.
+/// numbers. Passes them to `take` in order.
 ///
 /// # Errors
 /// That of `take`, which ends the games, and the reason why a game cannot start.
 pub fn compare(
     past: &Past,
-    changes: Changes<'_>,
+    changes: &Changes,
     futures: usize,
     (threads, stop): (NonZeroUsize, &AtomicBool),
-    mut take: impl FnMut([Game; 2]) -> Result<(), String>,
+    mut take: impl FnMut([Future; 2]) -> Result<(), String>,
 ) -> Result<(), String> {
     let moment = Moment::of(past, |_, _| true).map_err(|why| why.to_string())?;
     let moment = Mutex::new(moment);
@@ -136,11 +199,11 @@ pub fn compare(
         futures,
         (threads, stop),
         |(), i, stop| {
-            let game =
+            let future =
                 |changes| future_of(&past.scenario, &moment, (seed_of(past, i), changes), stop);
-            Ok::<_, String>([game(&[])?, game(changes)?])
+            Ok::<_, String>([future(&Changes::default())?, future(changes)?])
         },
-        |games| take(games?),
+        |futures| take(futures?),
     )
 }
 
@@ -148,12 +211,23 @@ pub fn compare(
 pub(crate) fn future_of(
     scenario: &Scenario,
     moment: &Mutex<Moment>,
-    (seed, changes): (u64, Changes<'_>),
+    (seed, changes): (u64, &Changes),
     stop: Stop<'_>,
-) -> Result<Game, String> {
+) -> Result<Future, String> {
     let future = moment.lock().reseeded(seed)?;
-    let contest = future.end(changes, |_| !stop.is_set());
-    Ok(Game::new(scenario, contest.outcome()))
+    let mut scores: Vec<(f64, [u32; 2])> = vec![];
+    let contest = future.end(changes, |contest| {
+        let score = [contest.score()[0], contest.score()[1]];
+        if scores.last().is_none_or(|(_, last)| *last != score) {
+            scores.push((contest.now().as_s(), score));
+        }
+        !stop.is_set()
+    });
+    let contest = contest.map_err(|why| why.to_string())?;
+    Ok(Future {
+        game: Game::new(scenario, contest.outcome()),
+        scores,
+    })
 }
 
 /// The seed of a future.

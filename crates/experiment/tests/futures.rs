@@ -1,7 +1,7 @@
 //! Futures of a recorded game, and the turning points that they show.
 
 use experiment::turning::{Plan, Report, games, turning_points};
-use experiment::whatif::{Past, compare, play, seed_of};
+use experiment::whatif::{Changes, Fan, Past, compare, play, seed_of};
 use primitives::reseed::Reseed;
 use primitives::{SimTime, VehicleId};
 use scenario::Scenario;
@@ -62,7 +62,7 @@ fn without_changes_a_future_is_the_game_that_its_minds_play() {
     };
     let want = arena::play(&whole, agent::minds_of(&whole), whole.seed).unwrap();
     let mut states = vec![];
-    let future = play(&past, &[], seed, |contest| {
+    let future = play(&past, &Changes::default(), seed, |contest| {
         states.push((contest.now(), contest.digest()));
         true
     });
@@ -93,7 +93,10 @@ fn without_changes_a_future_is_the_game_that_its_minds_play() {
 fn changed_boats_follow_another_strategy_from_the_moment_on() {
     let past = past();
     let idle = strategy("idle");
-    let changes = [0, 1].map(|boat| (VehicleId(boat), idle.clone()));
+    let changes = Changes {
+        minds: [0, 1].map(|boat| (VehicleId(boat), idle.clone())).into(),
+        sea: None,
+    };
     let played = |threads: usize| {
         let mut all = vec![];
         let threads = NonZeroUsize::new(threads).unwrap();
@@ -102,8 +105,8 @@ fn changed_boats_follow_another_strategy_from_the_moment_on() {
             &changes,
             6,
             (threads, &AtomicBool::new(false)),
-            |games| {
-                all.push(games);
+            |future| {
+                all.push(future);
                 Ok(())
             },
         );
@@ -112,16 +115,19 @@ fn changed_boats_follow_another_strategy_from_the_moment_on() {
     };
     let futures = played(1);
     assert_eq!(futures, played(2), "whatever the number of threads");
-    for (i, games) in futures.iter().enumerate() {
-        for (game, changes) in games.iter().zip([&[][..], &changes]) {
+    for (i, pair) in futures.iter().enumerate() {
+        for (future, changes) in pair.iter().zip([&Changes::default(), &changes]) {
             let again = play(&past, changes, seed_of(&past, i), |_| true).unwrap();
-            assert_eq!(game.digest, again.outcome().digest, "as from the start");
+            let want = again.outcome().digest;
+            assert_eq!(future.game.digest, want, "as from the start");
+            let (_, end) = future.scores.last().expect("a score at the moment");
+            assert_eq!(*end, future.game.score);
         }
     }
     let grabs = |of: usize| {
         futures
             .iter()
-            .map(|games| games[of].counts[0].grabs)
+            .map(|pair| pair[of].game.counts[0].grabs)
             .sum::<u32>()
     };
     assert!(
@@ -131,7 +137,52 @@ fn changed_boats_follow_another_strategy_from_the_moment_on() {
         grabs(1)
     );
     let first = &futures[0];
-    assert_ne!(first[0].digest, first[1].digest);
+    assert_ne!(first[0].game.digest, first[1].game.digest);
+    let fan = Fan::of(
+        futures.iter().map(|pair| &pair[0]),
+        0,
+        &[past.until.as_s(), 90.0],
+    );
+    let mut points: Vec<u32> = futures.iter().map(|pair| pair[0].game.score[0]).collect();
+    points.sort_unstable();
+    let at_end = fan.points.map(|points| points[1]);
+    assert_eq!(
+        at_end,
+        [0, 1, 2, 4, 5].map(|rank| points[rank]),
+        "the nearest ranks of six"
+    );
+}
+
+#[test]
+fn another_sea_takes_over_at_the_moment() {
+    let past = past();
+    let sea: scenario::sea::Sea = scenario::load_file(&shipped("seas/gale")).expect("a sea");
+    let changes = Changes {
+        minds: vec![],
+        sea: Some(sea.clone()),
+    };
+    let seed = seed_of(&past, 0);
+    let states = |changes: &Changes| {
+        let mut states = vec![];
+        play(&past, changes, seed, |contest| {
+            let wind = contest.scenario().sea.wind.as_ref();
+            let wind_m_s = wind.map_or(0.0, |wind| wind.speed_10m_m_s);
+            states.push((contest.now(), contest.digest(), wind_m_s));
+            true
+        })
+        .expect("it starts");
+        states
+    };
+    let (calm, gale) = (states(&Changes::default()), states(&changes));
+    let before = calm
+        .iter()
+        .take_while(|(now, ..)| *now <= past.until)
+        .count();
+    assert!(before > 10);
+    let digests = |of: &[(SimTime, u128, f64)]| of.iter().map(|state| state.1).collect::<Vec<_>>();
+    assert_eq!(digests(&calm[..before]), digests(&gale[..before]));
+    assert_ne!(calm[before].1, gale[before].1, "from the first decision on");
+    assert!(gale[before].2 > calm[before].2 + 10.0);
 }
 
 /// The report from few futures of the game.
@@ -168,7 +219,8 @@ fn chances_are_those_of_futures_played_from_the_start() {
             ..past.clone()
         };
         let played = (0..moments[i].futures).map(move |future| {
-            let contest = play(&past, &[], seed_of(&past, future), |_| true).unwrap();
+            let contest =
+                play(&past, &Changes::default(), seed_of(&past, future), |_| true).unwrap();
             let [blue, red] = [contest.score()[0], contest.score()[1]];
             f64::midpoint(f64::from(blue > red), f64::from(blue >= red))
         });

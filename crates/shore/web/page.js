@@ -64,6 +64,7 @@ import { Theme } from './theme.js';
 import { Timeline } from './timeline.js';
 import { TrailLayer } from './trail.js';
 import { View } from './view.js';
+import { WhatIf } from './what_if.js';
 import { expose } from './window.js';
 import { plain, show, write } from './words.js';
 
@@ -108,6 +109,7 @@ class Page {
     this.span = new Span();
     this.panels = new Panels();
     this.timeline = new Timeline(send, this.span);
+    this.whatIf = new WhatIf(send, () => this.timeline.at_s);
     this.north = new North(this.view, [this.drive]);
     this.plots = new Plots({ send: (message) => this.link.send(message), seek: (t_s) => this.timeline.seek(t_s), span: this.span });
     this.capture = new Capture(this.layers, this.game);
@@ -188,7 +190,10 @@ class Page {
       case 'hello': return this.greet(message);
       case 'preparing': return this.wait(message);
       case 'state': game.state = message; break;
-      case 'player': game.player = message; break;
+      case 'player':
+        game.player = message;
+        this.whatIf.setRecording(message.file);
+        break;
       case 'events':
         game.takeEvents(message);
         this.controls.tellEvents(message.events ?? [], message.reset);
@@ -203,6 +208,7 @@ class Page {
         this.plots.curves.take(message);
         this.timeline.takeScore(message);
         break;
+      case 'what_if': this.whatIf.take(message); break;
       case 'estimate': if (message.vehicle === game.selected) game.estimate = message; break;
       case 'status': game.takeStatus(message, performance.now()); break;
       case 'operated': this.details.operate.hear(message); break;
@@ -257,6 +263,7 @@ class Page {
     document.body.classList.toggle('replay', hello.mode === 'replay');
     document.body.classList.toggle('real', hello.mode === 'live' && game.vehicles.some(({ external }) => external));
     this.background.greet(hello.chart);
+    this.whatIf.greet(hello);
     this.alarms.greet(hello);
     show(byId('connection'), false);
     const field = hello.chart.field;

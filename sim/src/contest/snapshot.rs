@@ -8,6 +8,7 @@ use crate::spawn::NoStart;
 use crate::state::State;
 use primitives::reseed::Reseed;
 use scenario::Scenario;
+use scenario::sea::Sea;
 use thiserror::Error;
 use xxhash_rust::xxh3;
 
@@ -99,11 +100,21 @@ impl Contest {
     /// # Errors
     /// [`NoStart`], which the same game without another seed would have met before.
     pub fn reseeded(&self, seed: u64) -> Result<Contest, NoStart> {
+        let after_s = self.now().as_s();
+        self.continued(|scenario| scenario.reseed.push(Reseed { after_s, seed }))
+    }
+
+    /// A contest in the same state that continues in another sea.
+    ///
+    /// # Errors
+    /// [`NoStart`] if the seed's values do not suit this sea.
+    pub fn in_sea(&self, sea: &Sea) -> Result<Contest, NoStart> {
+        self.continued(|scenario| scenario.sea = sea.clone())
+    }
+
+    fn continued(&self, change: impl FnOnce(&mut Scenario)) -> Result<Contest, NoStart> {
         let mut scenario = (*self.scenario).clone();
-        scenario.reseed.push(Reseed {
-            after_s: self.now().as_s(),
-            seed,
-        });
+        change(&mut scenario);
         let (radio, sightings) = self.messages();
         let mut contest = Contest::new(&scenario, scenario.seed)?;
         contest.put((

@@ -100,6 +100,12 @@ pub(super) enum PageMessage<'a> {
         modes: &'a [Option<String>],
     },
     Curves(&'a Curves<'a>),
+    WhatIf {
+        done: u32,
+        total: u32,
+        result: Option<&'a Value>,
+        failed: Option<&'a str>,
+    },
     Estimate {
         vehicle: &'a str,
         x: f64,

@@ -4,6 +4,7 @@ use super::view::Access;
 use messages::Control;
 use messages::external::OperatorCommand;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A message from a page, as defined in `PROTOCOL.md`.
 #[derive(Clone, Debug, PartialEq, Deserialize, strum::IntoStaticStr)]
@@ -29,6 +30,11 @@ pub enum PageRequest {
     Curves {
         /// The vehicle's name. None: only the score.
         vehicle: Option<String>,
+    },
+    /// Plays futures of a recording.
+    WhatIf {
+        /// What differs. None stops them.
+        question: Option<Question>,
     },
     /// Controls the whole game.
     Control {
@@ -80,13 +86,31 @@ pub enum PageRequest {
     },
 }
 
+/// What differs in futures of a recorded game.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub struct Question {
+    /// The moment from which they differ, simulated s.
+    pub at_s: f64,
+    /// How many futures to play.
+    pub futures: u32,
+    /// Strategies by team.
+    #[serde(default)]
+    pub teams: BTreeMap<String, String>,
+    /// Strategies by vehicle.
+    #[serde(default)]
+    pub vehicles: BTreeMap<String, String>,
+    /// The sea from the moment on.
+    #[serde(default)]
+    pub sea: Option<String>,
+}
+
 impl PageRequest {
     /// The request's name in the protocol.
     pub fn name(&self) -> &'static str {
         self.into()
     }
 
-    /// The access that the request needs in a live game.
+    /// The access that the request needs in a live game, and for futures of a recording.
     pub fn needs(&self) -> Access {
         match self {
             PageRequest::Ack
@@ -95,7 +119,8 @@ impl PageRequest {
             | PageRequest::Curves { .. }
             | PageRequest::Step { .. }
             | PageRequest::Seek { .. } => Access::Watch,
-            PageRequest::Control { .. }
+            PageRequest::WhatIf { .. }
+            | PageRequest::Control { .. }
             | PageRequest::Speed { .. }
             | PageRequest::Drive { .. }
             | PageRequest::LetGo { .. } => Access::Control,

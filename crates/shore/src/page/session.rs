@@ -57,7 +57,10 @@ impl PageSession {
             self.undrawn = self.undrawn.saturating_sub(1);
             return;
         }
-        let is_allowed = self.viewer.mode() == Mode::Replay || self.access >= ask.needs();
+        // Each page has its own playback, but futures keep all cores busy.
+        let is_own =
+            self.viewer.mode() == Mode::Replay && !matches!(ask, PageRequest::WhatIf { .. });
+        let is_allowed = is_own || self.access >= ask.needs();
         if !is_allowed {
             let reason = match self.access {
                 Access::Watch => "this page may only watch: open it with the token",

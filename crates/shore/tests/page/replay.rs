@@ -13,7 +13,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 pub(crate) fn show() -> Arc<dyn View> {
-    Arc::new(ReplayView::new(two_minutes(), Some(Box::new(Rememberer))))
+    Arc::new(ReplayView::new(
+        None,
+        two_minutes(),
+        Some(Box::new(Rememberer)),
+        None,
+    ))
 }
 
 #[test]
@@ -223,7 +228,7 @@ fn a_frame_that_is_damaged_is_left_out_and_all_others_are_shown() {
     bytes[place] = 0xff;
     let recorded = recorded_in(bytes);
     assert_eq!((recorded.damaged.count, recorded.frame_times.len()), (1, 3));
-    let (_page, mut client) = visit(Arc::new(ReplayView::new(recorded, None)));
+    let (_page, mut client) = visit(Arc::new(ReplayView::new(None, recorded, None, None)));
     let shown = [0, 1, 2].map(|_| {
         let seq = seq_of(&client.frame());
         client.ack();
@@ -235,7 +240,7 @@ fn a_frame_that_is_damaged_is_left_out_and_all_others_are_shown() {
 
 #[test]
 fn a_recording_without_frames_is_shown_too() {
-    let (_page, mut client) = visit(Arc::new(ReplayView::new(recorded(0), None)));
+    let (_page, mut client) = visit(Arc::new(ReplayView::new(None, recorded(0), None, None)));
     for ask in [
         r#"{"do":"control","what":"resume"}"#,
         r#"{"do":"step","by":1}"#,
@@ -282,7 +287,7 @@ fn is_of_selected(said: &Outgoing) -> bool {
 
 #[test]
 fn what_can_wait_waits_until_there_is_room() {
-    let show = ReplayView::new(two_minutes(), None);
+    let show = ReplayView::new(None, two_minutes(), None, None);
     let mut viewer = show.open_viewer(Access::Watch);
     let now = clock::now();
     while viewer.next_message(now, Budget::All).is_some() {}
@@ -310,7 +315,7 @@ proptest! {
     fn whatever_is_asked_frames_come_in_order_between_jumps(
         asks in prop::collection::vec((any_ask(), 0..2_000_u64, any_room()), 1..30),
     ) {
-        let show = ReplayView::new(two_minutes(), None);
+        let show = ReplayView::new(None, two_minutes(), None, None);
         let mut viewer = show.open_viewer(Access::Watch);
         let mut now = clock::now();
         for (ask, wait_ms, room) in asks {

@@ -221,7 +221,7 @@ impl Viewer for PageViewer {
             PageRequest::Step { .. } | PageRequest::Seek { .. } => {
                 Err("a running game cannot be rewound".to_owned())
             }
-            PageRequest::Curves { .. } => {
+            PageRequest::Curves { .. } | PageRequest::WhatIf { .. } => {
                 Err("curves need a recording: this game is still running".to_owned())
             }
         }

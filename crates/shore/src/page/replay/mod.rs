@@ -1,17 +1,21 @@
 //! A recording, shown to pages with separate playbacks.
 
 mod curves;
+mod futures_thread;
 mod playback;
 mod query_thread;
 mod recorded;
 mod viewer;
 
+pub use crate::page::request::Question;
+pub use futures_thread::Futures;
 pub use query_thread::Helms;
 pub use recorded::Recorded;
 
 use super::chart::chart;
 use super::view::{Access, Changes, View, Viewer};
 use curves::Plotter;
+use futures_thread::FuturesThread;
 use query_thread::{QueryThread, Sources};
 use serde_json::Value;
 use std::sync::Arc;
@@ -31,20 +35,19 @@ struct SharedReplay {
     /// The origin of the game.
     about: Option<String>,
     queries: QueryThread,
+    /// `None` if futures cannot be played.
+    futures: Option<FuturesThread>,
     viewers: AtomicU64,
 }
 
 impl ReplayView {
-    /// Shows a recording. Without `helms` there are no helm reports.
-    pub fn new(source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
-        ReplayView::about(None, source, helms)
-    }
-
-    /// Shows a recording with a text about its origin.
-    pub fn about(
+    /// Shows a recording, with a sentence about its origin if there is one. Without `helms` there
+    /// are no helm reports, without `futures` no futures.
+    pub fn new(
         about: Option<String>,
         source: Arc<Recorded>,
         helms: Option<Box<dyn Helms>>,
+        futures: Option<Box<dyn Futures>>,
     ) -> ReplayView {
         let news = Changes::default();
         let scenario = source.recording.scenario().clone();
@@ -52,6 +55,10 @@ impl ReplayView {
         if let Some(chances) = &source.chances {
             chart["chances"] = chances.clone();
         }
+        if let Some(futures) = &futures {
+            chart["what_if"] = futures.choices();
+        }
+        let futures = futures.map(|futures| FuturesThread::open(futures, news.clone()));
         let plotter = Plotter::new(Arc::clone(&source.recording));
         let queries = QueryThread::open(
             Sources {
@@ -67,6 +74,7 @@ impl ReplayView {
                 chart,
                 about,
                 queries,
+                futures,
                 viewers: AtomicU64::new(0),
             }),
             news,

@@ -214,9 +214,11 @@ impl PageViewer {
                 .queries
                 .request(self.viewer, Query::Modes(decision, at));
         }
+        let futures = self.shared.futures.as_ref();
         self.shared
             .queries
             .take_other(self.viewer)
+            .or_else(|| futures?.take(self.viewer))
             .map(Outgoing::Text)
     }
 
@@ -338,6 +340,11 @@ impl Viewer for PageViewer {
                 self.requested_modes = None;
             }
             PageRequest::Curves { vehicle } => self.request_curves(vehicle.as_deref())?,
+            PageRequest::WhatIf { question } => {
+                let thread = self.shared.futures.as_ref();
+                let thread = thread.ok_or("this game cannot be played on")?;
+                thread.request(self.viewer, question.clone());
+            }
             PageRequest::Control {
                 what: Control::Pause,
             } => self.playback.pause(now),
@@ -438,6 +445,9 @@ impl Viewer for PageViewer {
 impl Drop for PageViewer {
     fn drop(&mut self) {
         self.shared.queries.remove(self.viewer);
+        if let Some(futures) = &self.shared.futures {
+            futures.request(self.viewer, None);
+        }
     }
 }
 
