@@ -13,7 +13,7 @@ after(() => browser.close());
 /** Plays and records a game of two minutes. Returns its file. */
 async function recording(t) {
   const place = folder(t);
-  await squall(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--in-process', '--set', 'rules.time_limit_s=120', '--record', place);
+  await squall(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--in-process', '--set', 'game.duration_s=120', '--record', place);
   return join(place, readdirSync(place).find((name) => name.endsWith('.mcap')));
 }
 

@@ -20,7 +20,7 @@ const quoted = (word) => (/^[\w./=:@-]+$/.test(word) ? word : `'${word.replaceAl
 class FanChart {
   constructor(title) {
     this.place = make('div', 'fan');
-    this.box = make('figure', '', '', make('figcaption', '', title), this.place);
+    this.box = make('figure', '', '', make('figcaption', '', '', make('strong', '', title), make('span', 'faint', ' median, middle 50 and 90 %')), this.place);
   }
 
   /** `fans` has for each team a list of points for each quantile; `most` is the top of the scale. */
@@ -36,7 +36,7 @@ class FanChart {
     })));
     const bands = fans.flatMap((_, team) => BANDS.map((share, i) => ({ series: [5 * team + 5 - i, 5 * team + 1 + i], fill: fade(team, share) })));
     this.chart = new uPlot({
-      width, height, legend: { show: false }, padding: [8, 12, 0, 0], cursor: { show: false },
+      width, height, legend: { show: false }, padding: [8, 22, 0, 0], cursor: { show: false },
       scales: { x: { time: false }, y: { range: () => [0, most] } },
       axes: [
         { ...side, size: 24, gap: 3, values: (_, ticks) => ticks.map(clockShort) },
@@ -82,7 +82,6 @@ export class WhatIf {
     };
     const { strategies, seas, futures_max: most } = this.choices;
     const named = (names) => [[AS_RECORDED, 'as recorded'], ...names.map((name) => [name, plain(name)])];
-    this.file = chart.name;
     this.teams = chart.teams.slice(0, 2).map(({ name }) => name);
     this.ofTeams = this.teams.map((name) => select(named(strategies), { id: `what-if-team-${name}` }));
     this.ofBoats = chart.vehicles.map(({ name }) => [name, select(named(strategies), { id: `what-if-boat-${name}` })]);
@@ -95,18 +94,18 @@ export class WhatIf {
     this.progress = make('progress', { id: 'what-if-progress', hidden: true });
     this.said = make('p', { id: 'what-if-said', role: 'status', class: 'faint' });
     this.table = make('table', { id: 'what-if-table', hidden: true });
-    this.charts = ['As recorded', 'Changed'].map((title) => new FanChart(title));
+    this.charts = ['Points as recorded', 'Points with the changes'].map((title) => new FanChart(title));
     this.fans = make('div', { class: 'fans', hidden: true }, '', ...this.charts.map(({ box }) => box));
     this.command = make('code', { id: 'what-if-command' });
     const boats = make('details', '', '', make('summary', '', 'Single boats'), make('div', 'what-if-form', '', ...this.ofBoats.map(([name, field], i) => row(plain(name), field, chart.vehicles[i].team))));
     this.box.replaceChildren(
       make('header', '', '', make('h2', { id: 'what-if-title' }, 'What if'), make('button', { type: 'button', 'aria-label': 'Close', onclick: () => this.box.close() }, '×')),
-      make('p', '', 'Plays futures of this game from ', this.moment, ' on, each as recorded and with these changes, with the same random numbers.'),
+      make('p', '', 'Plays futures of this game from ', this.moment, ' on, each once as recorded and once with these changes, with the same random numbers.'),
       make('div', 'what-if-form', '', ...this.teams.map((name, team) => row(`${plain(name)} plays`, this.ofTeams[team], team)), row('Sea', this.sea), row('Futures', this.count)),
       boats,
       make('div', 'what-if-row', '', this.play, this.progress, this.said),
       this.fans, this.table,
-      make('p', 'faint', 'In a terminal: ', this.command),
+      make('p', 'faint', 'In a terminal: ', this.command, '. Add ', make('code', '', '--record FILE'), ' to keep the future that changes most.'),
     );
   }
 
@@ -196,10 +195,5 @@ export class WhatIf {
       make('thead', '', '', make('tr', '', '', ...['Per game', 'As recorded', 'Changed', 'Difference'].map((title) => make('th', { scope: 'col' }, title)))),
       make('tbody', '', '', ...rows),
     );
-  }
-
-  /** Draws the charts again, in other colours. */
-  redraw() {
-    if (this.result && this.box.open) this.show(this.result);
   }
 }
