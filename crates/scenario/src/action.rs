@@ -18,13 +18,13 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
-    /// Those of Pyquaticus.
+    /// The actions of Pyquaticus.
     Pyquaticus,
     /// A turn and a speed.
     Continuous,
     /// The values of a variable of a strategy.
     Options,
-    /// Those of a table.
+    /// The actions of a table.
     #[serde(untagged)]
     Table(ActionTable),
 }
@@ -98,7 +98,7 @@ pub struct ActionTable {
 /// Maximum number of actions of a table.
 const ACTIONS_MAX: usize = 64;
 
-// Its numbers are finite.
+// The numbers are finite.
 impl Eq for ActionTable {}
 
 impl ActionTable {
@@ -158,12 +158,13 @@ pub(crate) struct TableAction(
 pub enum Action {
     /// The index of one of several actions.
     Discrete(usize),
-    /// Numbers from -1 to 1; values beyond are clamped.
+    /// Numbers from -1 to 1; values outside are clamped.
     Continuous([f32; 2]),
 }
 
 impl Action {
-    /// The discrete action that these logits' probabilities give for a uniform number from 0 to 1.
+    /// The discrete action that the probabilities of these logits give for a uniform number from 0
+    /// to 1.
     pub fn drawn(logits: &[f32], unit: f64) -> Action {
         let mut below = 0.0;
         let all = probabilities(logits);
@@ -171,7 +172,7 @@ impl Action {
             below += f64::from(*probability);
             unit < below
         });
-        // Rounding can leave the sum just below 1.
+        // Rounding may leave the sum just below 1.
         drawn.map_or_else(|| Action::likeliest(logits), Action::Discrete)
     }
 
@@ -184,7 +185,7 @@ impl Action {
 }
 
 impl ActionSpace {
-    /// A discrete action in words: "50 % speed, 45° to port".
+    /// A discrete action as a string: "50 % speed, 45° to port".
     pub fn words(self, action: usize) -> String {
         if self == ActionSpace::Options {
             return format!("option {action}");
@@ -215,11 +216,11 @@ pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     parts.iter().map(|part| (part / sum) as f32).collect()
 }
 
-/// The request that an action makes to a boat.
+/// The set-point that an action requests from a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SetPoint {
-    /// Desired turn, rad clockwise, -pi to pi: half a turn to either side is two different
-    /// requests.
+    /// Desired turn, rad clockwise, -pi to pi: half a turn to port and half a turn to starboard are
+    /// different requests.
     pub turn_rad: f64,
     /// Desired course after this turn from the heading at the decision, rad clockwise from north.
     pub course_rad: f64,
