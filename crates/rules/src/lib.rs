@@ -63,7 +63,7 @@ pub struct Rules {
     #[serde(default)]
     #[schemars(extend("default" = "solid"))]
     pub contact: Contact,
-    /// The place to which a flag must be brought.
+    /// Place to which a flag must be brought.
     #[schemars(extend("default" = "own_flag"))]
     pub capture_at: CaptureAt,
     /// Whether a capture requires the team's own flag to be home.

@@ -23,7 +23,7 @@ pub struct Sharing {
     /// Standard deviation of velocity, per axis, m/s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     pub velocity_noise_m_s: f64,
-    /// Fraction of reports that are lost.
+    /// Fraction of reports lost.
     #[schemars(range(min = 0, max = 1), extend("default" = 0))]
     pub loss: f64,
     /// Time without reports after which a contact is forgotten, s.

@@ -234,8 +234,8 @@ const TURNS: usize = 8;
 const SPEEDS: [f64; 2] = [1.0, 0.5];
 
 impl ActionSpace {
-    /// Number of discrete actions; none for continuous actions, and for options, which depend on a
-    /// strategy.
+    /// Number of discrete actions; none for continuous actions, and for options, since their number
+    /// depends on a strategy.
     pub fn count(self) -> Option<usize> {
         match self {
             ActionSpace::Pyquaticus => Some(SPEEDS.len() * TURNS + 1),
@@ -244,7 +244,7 @@ impl ActionSpace {
         }
     }
 
-    /// Number of a policy's outputs: a logit for each discrete action, or a number for each
+    /// Number of a policy's outputs: one logit for each discrete action, or one number for each
     /// dimension; a minimum for options.
     pub fn outputs(self) -> usize {
         self.count().unwrap_or(2)
@@ -255,7 +255,7 @@ impl ActionSpace {
         self != ActionSpace::Continuous
     }
 
-    /// The action nearest to this turn, rad clockwise, and this speed, the inverse of
+    /// The action nearest to this turn (rad clockwise) and speed, the inverse of
     /// [`ActionSpace::set_point`]; none for options.
     pub fn nearest(self, turn_rad: f64, speed_m_s: f64, speed_max_m_s: f64) -> Option<Action> {
         let share = (speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
@@ -280,8 +280,8 @@ impl ActionSpace {
             .map(Action::Discrete)
     }
 
-    /// The turn and speed of an action for a boat with this heading and top speed. Actions of
-    /// another space, non-finite ones and options are a stop.
+    /// The turn and speed of an action for a boat with this heading and top speed. Actions of a
+    /// different space, non-finite actions and options mean a stop.
     pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
         let (turn_rad, share) = match (self, action) {
             (ActionSpace::Pyquaticus, Action::Discrete(i)) if i < SPEEDS.len() * TURNS => (

@@ -39,14 +39,14 @@ pub(crate) struct Circle {
 
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Flag {
-    /// The team that defends it.
+    /// The team that defends the flag.
     pub(crate) team: Side,
     /// Position, [x, y] in m, inside the field.
     #[schemars(inner(range(min = -1000000, max = 1000000)))]
     pub(crate) at: [f64; 2],
 }
 
-/// A team, by its order in the game file: a field does not know the teams' names.
+/// A team, by its order in the game file; a field does not know the teams' names.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Side {
