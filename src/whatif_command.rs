@@ -1,5 +1,5 @@
-//! `squall whatif`: what would have happened after a given time of a recorded game with other
-//! minds.
+//! `squall whatif`: plays out what would have happened after a given time of a recorded game with
+//! other minds.
 
 use crate::jobs_args::JobsArgs;
 use crate::progress::Progress;
@@ -213,7 +213,7 @@ fn margin(game: &Game) -> i64 {
     i64::from(game.score[0]) - i64::from(game.score[1])
 }
 
-/// The future in which the changes alter the result most.
+/// The future whose result the changes alter most.
 fn most_affected(futures: &[[Game; 2]]) -> usize {
     let by = |games: &[Game; 2]| (margin(&games[1]) - margin(&games[0])).abs();
     (0..futures.len())
@@ -222,7 +222,7 @@ fn most_affected(futures: &[[Game; 2]]) -> usize {
         .unwrap_or(0)
 }
 
-/// What is compared: its name, its value in a game for a team, and whether that is a fraction.
+/// A quantity to compare: its name, its value in a game for a team, and whether that is a fraction.
 type Quantity = (&'static str, fn(&Game, usize) -> f64, bool);
 
 const QUANTITIES: [Quantity; 7] = [
@@ -304,7 +304,7 @@ fn record(
     changes: whatif::Changes<'_>,
     future: usize,
 ) -> Result<()> {
-    // If the file did not exist, `check` has created and removed it; nothing is overwritten.
+    // If the file did not exist, `check` has created and removed it, so nothing is overwritten.
     let file =
         NewFile::create(path).with_context(|| format!("cannot record to {}", path.display()))?;
     let mut recorder = GameRecorder::in_process(file, name, env!("SQUALL_COMMIT"));

@@ -39,7 +39,7 @@ pub(crate) struct Circle {
 
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Flag {
-    /// The team that defends the flag.
+    /// The team that defends it.
     pub(crate) team: Side,
     /// Position, [x, y] in m, inside the field.
     #[schemars(inner(range(min = -1000000, max = 1000000)))]

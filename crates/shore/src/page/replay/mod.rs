@@ -40,7 +40,7 @@ impl ReplayView {
         ReplayView::about(None, source, helms)
     }
 
-    /// Shows a recording with a text about its origin.
+    /// Shows a recording with a description of its origin.
     pub fn about(
         about: Option<String>,
         source: Arc<Recorded>,
