@@ -40,9 +40,9 @@ pub(crate) struct Thread {
     pub(crate) node: usize,
     pub(crate) handle: Option<JoinHandle<()>>,
     pub(crate) status: Status,
-    /// Whether it unwinds when it continues.
+    /// Whether it will unwind when it continues.
     pub(crate) is_killed: bool,
-    /// How often it has waited.
+    /// Number of times it has waited.
     pub(crate) waits: u64,
 }
 
