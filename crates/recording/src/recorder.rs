@@ -216,7 +216,7 @@ fn write<W: Write + Seek>(
     update_size();
 }
 
-/// Lets entries accumulate, so that the recorded threads need not wake this one.
+/// Lets entries accumulate, so that the game's threads need not wake this one for each.
 #[expect(
     clippy::disallowed_methods,
     reason = "entries are written in batches, by the clock"
