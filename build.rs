@@ -1,10 +1,10 @@
-//! Tells a program which commit it is built from, both `squall` and `squall-gateway` in a folder
-//! below.
+//! Tells a program the commit it was built from: both `squall` and `squall-gateway`, which lies in
+//! a folder below.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The sources of the programs.
+/// The programs' sources.
 const SOURCES: [&str; 9] = [
     "Cargo.toml",
     "Cargo.lock",
@@ -24,8 +24,8 @@ fn main() {
         "cargo::rustc-env=SQUALL_COMMIT={}",
         commit.as_deref().unwrap_or("unknown")
     );
-    // HEAD's log changes with a new commit; whether the sources are as committed may change with
-    // any of them.
+    // HEAD's log changes with each commit; an edit to any of these files may change whether the
+    // sources match it.
     let watched = ["HEAD", "logs/HEAD"]
         .into_iter()
         .filter_map(|file| git(&root, &["rev-parse", "--git-path", file]));
@@ -37,7 +37,7 @@ fn main() {
     }
 }
 
-/// The folder of the workspace: the one above the package that has the lock file.
+/// The root of the workspace: the parent folder of the package that has the lock file.
 fn root() -> PathBuf {
     let package = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     let root = package
@@ -47,7 +47,7 @@ fn root() -> PathBuf {
     root.unwrap_or(package)
 }
 
-/// The commit, marked if the sources differ from it; none outside our repository.
+/// The commit, marked if the sources differ from it; `None` outside our repository.
 fn commit(root: &Path) -> Option<String> {
     // A packed copy inside another repository is not part of it.
     git(root, &["ls-files", "--error-unmatch", "build.rs"])?;
@@ -64,7 +64,7 @@ fn commit(root: &Path) -> Option<String> {
     })
 }
 
-/// The output of git in this folder, if it succeeds.
+/// The output of git run in this folder, if it succeeds.
 fn git(root: &Path, args: &[&str]) -> Option<String> {
     let command = Command::new("git").current_dir(root).args(args).output();
     let output = command.ok().filter(|output| output.status.success())?;

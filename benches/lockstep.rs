@@ -1,11 +1,12 @@
-//! Compares lockstep ticks per second across processes with a bare zenoh ping of the same sizes in
-//! the same run.
+//! Compares the rate of lockstep ticks across processes with that of a bare zenoh ping with
+//! messages of the same sizes, in the same run.
 //!
 //! The ping measures the cost of transport alone: a hub publishes one message per team to N leaf
 //! processes and waits until each has answered. Topology and message sizes are the same, but there
 //! is no game. The cases alternate, so that both see the same machine. The benchmark prints
-//! medians, the cost of keys (TLS and rules by certificate), and the rate of the same game in one
-//! process. Boats with the strategy *idle* stay still, so that only the game's messages remain.
+//! medians, the cost of keys (TLS and access rules by certificate), and the rate of the same game
+//! in one process. Boats with the strategy *idle* stay still, so that only the cost of the game's
+//! messages remains.
 #![allow(
     clippy::print_stdout,
     clippy::disallowed_methods,
@@ -153,7 +154,7 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
             fleet("red")
         )
     };
-    // A first short game determines the length of one of about two seconds.
+    // A short first game determines the length of a game of about two seconds.
     let mut duration_s = 40.0;
     loop {
         std::fs::write(&game, text(duration_s)).expect("a file");
@@ -182,7 +183,7 @@ fn squall(case: &Case, options: &[&str]) -> f64 {
     }
 }
 
-/// The sizes of a picture and of one process's orders in such a game, bytes.
+/// The sizes of a picture and of one process's orders in such a game (bytes).
 fn sizes(case: &Case) -> (usize, usize) {
     use messages::{Order, Orders, VehicleOrder};
     use primitives::VehicleId;
@@ -236,7 +237,7 @@ fn open(mode: &str, key: &str, endpoint: &str) -> Session {
     zenoh::open(config).wait().expect("a session")
 }
 
-/// A leaf process of the bare ping: answers every message of its team.
+/// A leaf process of the bare ping: answers every message to its team.
 fn echo(endpoint: &str, size: usize, name: &str) {
     let session = open("client", "connect/endpoints", endpoint);
     let back = session

@@ -1,5 +1,5 @@
-//! A game played from both sides: once as it is and once with the teams' strategies swapped, with
-//! the points summed.
+//! A game played from both sides: once as it is and once with the teams' strategies exchanged, with
+//! the points added up.
 
 use anyhow::{Result, bail};
 use command_line::explain::UsageError;
@@ -48,7 +48,7 @@ impl BothSides {
         Ok(BothSides { teams })
     }
 
-    /// Each strategy's points in both games: first the strategy that starts with the first team.
+    /// Each strategy's points in both games, beginning with the strategy of the first team.
     fn points(&self, reports: &[Report]) -> [u32; 2] {
         let points = |entry: usize| {
             let of_game = |(game, report): (usize, &Report)| {
@@ -59,7 +59,7 @@ impl BothSides {
         [points(0), points(1)]
     }
 
-    /// The points of each strategy as text.
+    /// The points of each strategy as a string.
     pub(crate) fn text(&self, reports: &[Report]) -> String {
         let [(first, first_strategy), (second, second_strategy)] = &self.teams;
         let [points, other_points] = self.points(reports);

@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The subcommands by purpose, in help order. Commands that need a network are not in every build.
+/// The subcommands by purpose, in help order. Some builds lack the commands that need a network.
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Play", &["demo", "run", "tournament", "sweep"]),
     ("Learn", &["train", "policy"]),
@@ -85,7 +85,7 @@ pub(crate) fn command() -> Command {
             .iter()
             .filter_map(|name| command.find_subcommand(name))
         {
-            // The first sentence only; the command's own help has the rest.
+            // Use only the first sentence; the command's own help has the rest.
             let about = one.get_about().map(ToString::to_string).unwrap_or_default();
             let about = about.split([':', ';', ',']).next().unwrap_or_default();
             lines.push_str(&format!("  {:width$}  {about}\n", one.get_name()));
@@ -101,7 +101,8 @@ pub(crate) fn command() -> Command {
         .after_help(text)
 }
 
-/// Parses the command line. If only another build has the command, it exits and names that build.
+/// Parses the command line. If only a different build has the command, it exits and names that
+/// build.
 pub(crate) fn matches() -> ArgMatches {
     let mut command = number::with_negative_numbers(command());
     command
@@ -128,7 +129,7 @@ pub(crate) fn not_built(what: &str) -> String {
 }
 
 pub(crate) fn first() -> ExitCode {
-    // Skip commands that only another build understands.
+    // Skip commands that only a different build understands.
     let command = |line: &str| {
         Some(
             line.trim()
@@ -144,14 +145,14 @@ pub(crate) fn first() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The error of this build for a command line, if it does not accept it.
+/// The error of this build for a command line, if it rejects it.
 fn refused(words: &str) -> Option<clap::Error> {
     let words = std::iter::once("squall").chain(words.split_whitespace());
     let refused = Cli::command().try_get_matches_from(words).err()?;
     (refused.kind() != ErrorKind::DisplayHelp).then_some(refused)
 }
 
-/// Prints a script that completes commands, options, and the names of files as they are now.
+/// Prints a script that completes commands, options, and names of the files that exist now.
 pub(crate) fn completions(args: &CompletionArgs) -> ExitCode {
     let mut command = with_names(command());
     let mut script = vec![];
@@ -174,7 +175,7 @@ pub(crate) fn completions(args: &CompletionArgs) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The command line, with the names of files as the possible values of their arguments.
+/// The command line, with the names of files as possible values of arguments.
 fn with_names(command: Command) -> Command {
     let with_names_of = |arg: Arg| {
         let value = arg
@@ -253,7 +254,7 @@ mod tests {
             known.iter().all(|name| grouped.contains(name)),
             "{grouped:?} lacks one of {known:?}"
         );
-        // The other commands are only in the build with the network.
+        // Only the build with the network has the other commands.
         assert_eq!(
             grouped.len() == known.len(),
             cfg!(feature = "network"),
@@ -273,7 +274,7 @@ mod tests {
         }
     }
 
-    /// All options with a value, each after its commands.
+    /// All options that take a value, each after its commands.
     fn options(command: &Command, before: &[String]) -> Vec<Vec<String>> {
         let own = command
             .get_arguments()

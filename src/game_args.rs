@@ -98,7 +98,7 @@ impl GameArgs {
         )
     }
 
-    /// Prints a remark if a rehearsal does not differ from the game.
+    /// Prints a remark if a rehearsal is the same as the game.
     pub(crate) fn remark_on_rehearsal(&self) -> Result<()> {
         let overrides = Overrides {
             simulate_all: false,

@@ -1,4 +1,4 @@
-//! The decision of a helm as text.
+//! The decision of a helm as a string.
 
 use messages::helm::HelmReport;
 

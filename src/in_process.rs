@@ -1,4 +1,4 @@
-//! Plays a whole game in this process and optionally records it.
+//! Plays a whole game in this process, and optionally records it.
 
 use crate::clock;
 use agent::MindRunner;
@@ -11,9 +11,9 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Plays the game of `scenario` that `seed` selects, without a network, until it is over or `stop`
-/// is set. Many minds decide on `threads` threads. Calls `look` before every decision and at the
-/// end.
+/// Plays the game of `scenario` with `seed`, without a network, until it is over or `stop` is set.
+/// With many minds, `threads` threads make their decisions. Calls `look` before every decision and
+/// at the end.
 ///
 /// # Errors
 /// If the game cannot start.

@@ -12,7 +12,7 @@ pub(crate) struct JobsArgs {
 }
 
 impl JobsArgs {
-    /// The number of useful threads for this many games.
+    /// The number of threads that are useful for this many games.
     pub(crate) fn threads(&self, games: usize) -> NonZeroUsize {
         experiment::threads(self.jobs, games)
     }

@@ -1,4 +1,4 @@
-//! A league's folder: an append-only file of game results, and the newest report.
+//! A league's folder: an append-only file of game results, and the latest report.
 
 use crate::output_file;
 use anyhow::{Context, Result, bail};

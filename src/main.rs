@@ -42,7 +42,7 @@ use command_line::{
 };
 use std::process::ExitCode;
 
-/// The version, and the commit that it was built from.
+/// The version, and the commit from which it was built.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
 
 /// A simulator for unmanned surface vehicles that play capture the flag.

@@ -1,4 +1,4 @@
-//! Helm reports of a recorded game: minds receive the recorded pictures again and reach the same
+//! Helm reports of a recorded game: minds receive the recorded pictures again, and reach the same
 //! decisions.
 
 use agent::{Mind, MindRunner, mind_of};
@@ -49,8 +49,8 @@ impl Minds {
         }
     }
 
-    /// The helm report, with the utilities of all functions, and the order of the vehicle's mind
-    /// when it repeats this decision, if it can.
+    /// The helm report with the utilities of all functions, and the order of the vehicle's mind
+    /// when it repeats this decision, if possible.
     pub(crate) fn report_of(
         &mut self,
         vehicle: VehicleId,
@@ -66,8 +66,8 @@ impl Minds {
         team.runner.mind(vehicle).and_then(Mind::report)
     }
 
-    /// The order of the vehicle's mind when it repeats this decision, if it can. Its report has the
-    /// utilities of all functions if they are `shown`, which takes most of the time.
+    /// The order of the vehicle's mind when it repeats this decision, if possible. If `shown`, its
+    /// report includes the utilities of all functions, which takes most of the time.
     pub(crate) fn decide(
         &mut self,
         vehicle: VehicleId,
@@ -76,7 +76,7 @@ impl Minds {
     ) -> Option<Order> {
         let index = self.recording.scenario().team_of(vehicle).index();
         if self.teams[index].runner.decided() > Some(decision) {
-            // Minds cannot go backwards: start again.
+            // Minds cannot go backwards, so start again.
             self.teams[index] = Team::new(&self.recording, TeamId(index as u8));
         }
         let Team { runner, pictures } = &mut self.teams[index];

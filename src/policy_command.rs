@@ -184,7 +184,7 @@ fn explained(
     let recording = Arc::new(recording_file::open(game, "read")?);
     let scenario = recording.scenario();
     let of = scenario.vehicle_named(vehicle)?;
-    // The cast saturates: a time out of range becomes a nonexistent decision.
+    // The cast saturates, so that a time out of range becomes a nonexistent decision.
     let decision = (at_s / scenario.decision().as_s() + 1e-9).floor() as u64;
     let found = Minds::new(Arc::clone(&recording))
         .report_of(of, decision)
@@ -226,7 +226,7 @@ fn explained(
     Ok(text)
 }
 
-/// The most likely actions, and how the choice changes without each input.
+/// The most likely actions, and how the choice would change without each input.
 fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usize) -> String {
     let chosen = choice(model, observed);
     let mut text = String::new();
@@ -235,7 +235,7 @@ fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usiz
         let asks = model.words(action);
         let _ = writeln!(text, "  {:>5.1} %  {asks}", 100.0 * chosen.numbers[action]);
     }
-    // An input of 0 adds nothing to any sum of the network.
+    // An input of 0 adds nothing to any sum in the network.
     let mut rows: Vec<(usize, f32, Choice)> = (0..observed.len())
         .map(|i| {
             let mut observed = observed.to_vec();

@@ -41,8 +41,8 @@ pub(crate) struct Args {
     pub(crate) jobs: Option<NonZeroUsize>,
 }
 
-/// The command that shows a recorded game; in a build without the page, the command that analyses
-/// it.
+/// The command that shows a recorded game or, in a build without the page, the command that
+/// analyses it.
 const LOOK: &str = if cfg!(feature = "network") {
     "squall replay"
 } else {
@@ -64,7 +64,7 @@ pub(crate) trait Player {
         file: Option<NewFile>,
         shell: Shell,
     ) -> Result<Option<Report>>;
-    /// Cleans up after a game, which is recorded in this file and had these problems.
+    /// Cleans up after a game, which was recorded in this file and had these problems.
     fn end(&mut self, file: Option<&Path>, problems: &[String], shell: Shell);
 }
 
@@ -183,7 +183,7 @@ fn play(
     Ok((file, report))
 }
 
-/// Plays the game as it is and with swapped strategies.
+/// Plays the game as it is and with exchanged strategies.
 fn both_sides(
     args: &Args,
     player: &mut dyn Player,

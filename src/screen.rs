@@ -1,4 +1,4 @@
-//! The terminal: events as lines, the state of the game as one line that is overwritten.
+//! The terminal: events as lines, and the state of the game as a line that is overwritten.
 
 use crate::result_table;
 use crate::style::Names;
@@ -111,13 +111,13 @@ impl Screen {
 }
 
 impl Drop for Screen {
-    /// Removes the status line, so that an error does not continue it.
+    /// Removes the status line, so that an error does not continue on it.
     fn drop(&mut self) {
         self.clear();
     }
 }
 
-/// A line, truncated to the width of the terminal; the whole line if there is no terminal.
+/// A line truncated to the width of the terminal; the whole line if there is no terminal.
 pub(crate) fn cut(line: &str) -> String {
     let width = if std::io::stdout().is_terminal() {
         columns().saturating_sub(1)
@@ -134,7 +134,7 @@ pub(crate) fn cut(line: &str) -> String {
     }
 }
 
-/// Words in lines that fit the terminal, all but the first indented; one line if there is no
+/// Words in lines that fit the terminal, all indented except the first; one line if there is no
 /// terminal.
 pub(crate) fn wrapped(words: &str) -> String {
     let width = if std::io::stdout().is_terminal() {
@@ -177,7 +177,7 @@ fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("waiting for {}", parts.join(" and ")))
 }
 
-/// The width of the terminal, columns; a common width if there is no terminal.
+/// The width of the terminal, columns; a typical width if there is no terminal.
 pub(crate) fn columns() -> usize {
     terminal_size::terminal_size().map_or(
         experiment::tournament::WIDTH,

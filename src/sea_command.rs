@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The track of the boat, released at rest at the datum, pointing north: that of `squall trial
+/// The track of the boat, released at rest at the datum, pointing north, as in `squall trial
 /// --manoeuvre drift`.
 fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sample>> {
     let mut trial_boat = TrialBoat::new(boat, sea, tick, seed, &Start::default());
@@ -79,7 +79,7 @@ fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sampl
 /// A line of the summary: name and value.
 type Line = (&'static str, String);
 
-/// The summary as text.
+/// The summary in text form.
 fn told(sea: &Sea, boat: &Boat, summary: &Summary, drifted: &[Sample]) -> String {
     let depth = sea
         .depth_m
@@ -196,7 +196,7 @@ fn drift_told(drifted: &[Sample], boat: &Boat) -> Vec<Line> {
     lines
 }
 
-/// A velocity as speed and bearing with `more` text; `none` if it is zero.
+/// A velocity as speed and bearing, followed by `more`; `none` if it is zero.
 fn flow(velocity_m_s: Ned, none: &str, more: &str) -> String {
     let speed_m_s = velocity_m_s.length();
     if speed_m_s < 0.005 {

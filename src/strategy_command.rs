@@ -41,7 +41,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Tables of all roles; a program that several roles share is printed once.
+/// Tables of all roles; a program shared by several roles is printed once.
 fn tables(strategy: &Strategy) -> String {
     let mut text = format!("strategy {}{}\n", strategy.name, dash(&strategy.about));
     for (i, role) in strategy.roles.iter().enumerate() {
@@ -218,7 +218,7 @@ fn leaf_label(program: &Program, leaf: usize) -> String {
     label
 }
 
-/// A text, quoted for Graphviz.
+/// A string, quoted for Graphviz.
 fn quoted(text: &str) -> String {
     format!(
         "\"{}\"",

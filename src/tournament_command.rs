@@ -111,7 +111,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     )
 }
 
-/// The games played, and their rate.
+/// The games played, and the rate at which they were played.
 struct Played {
     records: Vec<Record>,
     quality: Option<Quality>,
@@ -161,7 +161,7 @@ fn play_all(
     }
 }
 
-/// Plays games of a plan and judges how sensibly the boats behave.
+/// Plays games of a plan, and judges how sensibly the boats behave.
 fn play_judged(
     plan: &Plan,
     games: &[usize],

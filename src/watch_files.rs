@@ -1,4 +1,4 @@
-//! Watches files for changes, so that a user sees the effect of saving a file.
+//! Watches files for changes, so that users see the effect of saving a file.
 
 use crate::stop;
 use std::path::{Path, PathBuf};

@@ -240,7 +240,7 @@ fn most_affected(futures: &[[Future; 2]]) -> usize {
         .unwrap_or(0)
 }
 
-/// What is compared: its name, its value in a game for a team, and whether that is a fraction.
+/// A quantity to compare: its name, its value in a game for a team, and whether that is a fraction.
 type Quantity = (&'static str, fn(&Game, usize) -> f64, bool);
 
 const QUANTITIES: [Quantity; 7] = [

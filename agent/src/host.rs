@@ -1,8 +1,8 @@
-//! A competition entry as the mind of boats: a Python process of its own decides for those of a
+//! A competition entry as the mind of boats: a separate Python process decides for the boats of a
 //! team, and `host.py` in it translates to the entry's terms.
 //!
-//! Like the boats of MOOS, an exception among minds: its decisions come from outside, and wait for
-//! them has a limit on the wall clock. Without an answer in time, the boat stops.
+//! Like MOOS boats, an exception among minds: decisions come from outside, and the wait for them is
+//! limited by the wall clock. Without an answer in time, the boat stops.
 
 use crate::mind::Mind;
 use crate::pilot::{Pilot, Spaces};
@@ -23,16 +23,16 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The program that runs entries; passed as text, so that it needs no installation.
+/// The program that runs entries; passed as a string, so that it needs no installation.
 const PROGRAM: &str = include_str!("host.py");
-/// An entry loads its networks and libraries within this time.
+/// Maximum time for an entry to load its networks and libraries.
 const LOAD_LIMIT: Duration = Duration::from_secs(60);
-/// An entry ends within this time once the game is over, or is killed.
+/// Maximum time for an entry to end once the game is over, before it is killed.
 const END_LIMIT: Duration = Duration::from_secs(1);
-/// After this many decisions in a row without an answer in time, an entry is not asked again:
-/// otherwise a game could take hours.
+/// Number of consecutive decisions without an answer in time after which an entry is no longer
+/// asked; otherwise a game could take hours.
 const LATE_MAX: u32 = 3;
-/// Maximum number of outdated answers before the one for the last request.
+/// Maximum number of outdated answers before the answer to the last request.
 const OUTDATED_MAX: usize = 64;
 /// Maximum size of an answer, bytes.
 const ANSWER_MAX: u64 = 4096;
@@ -44,7 +44,7 @@ const STOP: usize = 16;
 pub(crate) struct Entries(Vec<(TeamId, Host, Arc<Mutex<Entry>>)>);
 
 impl Entries {
-    /// The entry for a vehicle, which starts for the first of its team.
+    /// The entry for a vehicle; starts it for the first vehicle of a team.
     pub(crate) fn entry(
         &mut self,
         scenario: &Scenario,
@@ -66,7 +66,7 @@ impl Entries {
 pub(crate) struct Entry {
     process: Result<Process, String>,
     limit: Duration,
-    /// Number of decisions in a row without an answer in time.
+    /// Number of consecutive decisions without an answer in time.
     late: u32,
 }
 
@@ -79,7 +79,7 @@ struct Process {
     number: u64,
 }
 
-/// A line of the entry's process.
+/// A line of output from the entry's process.
 #[derive(Deserialize)]
 struct Answer {
     number: u64,
@@ -114,7 +114,7 @@ impl Entry {
     /// The entry's choice for a boat.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is none.
     fn ask(&mut self, request: Value) -> Result<Chosen, String> {
         let process = self.process.as_mut().map_err(|why| why.clone())?;
         let answer = process.ask(request, self.limit);
@@ -178,7 +178,7 @@ impl Process {
 
     fn send(&mut self, message: &Value) {
         if let Some(stdin) = &mut self.stdin {
-            // If it no longer reads, it has ended, which the missing answer shows.
+            // If it no longer reads, it has ended; then no answer will arrive.
             let _ = writeln!(stdin, "{message}").and_then(|()| stdin.flush());
         }
     }
@@ -190,7 +190,7 @@ impl Process {
         self.answer(limit)
     }
 
-    /// The answer to the last request; those to earlier ones are too late.
+    /// The answer to the last request; answers to earlier ones are too late.
     fn answer(&self, limit: Duration) -> Result<Answer, RecvTimeoutError> {
         for _ in 0..OUTDATED_MAX {
             let line = self.answers.recv_timeout(limit)?;
@@ -222,7 +222,7 @@ impl Drop for Process {
     }
 }
 
-/// Passes on the lines of a process until it ends.
+/// Forwards the lines of a process until it ends.
 fn pass_lines(stdout: ChildStdout, sender: &SyncSender<Vec<u8>>) {
     let mut stdout = BufReader::new(stdout);
     loop {
@@ -234,7 +234,7 @@ fn pass_lines(stdout: ChildStdout, sender: &SyncSender<Vec<u8>>) {
     }
 }
 
-/// The first request: what is constant in a game, in Pyquaticus' frame.
+/// The first request: everything constant in a game, in Pyquaticus' frame.
 fn game_of(scenario: &Scenario, team: TeamId, host: &Host) -> Value {
     let field = &scenario.field;
     let teams = [TeamId(0), TeamId(1)];
@@ -281,7 +281,7 @@ impl HostMind {
         (program, is_direct): (&Program, bool),
         entry: Arc<Mutex<Entry>>,
     ) -> HostMind {
-        // The entry's process drops what other years lack.
+        // The entry's process drops values that other years do not have.
         let spaces = Spaces {
             observation: ObservationSpace::Pyquaticus2026,
             action: ActionSpace::Pyquaticus,
@@ -386,7 +386,7 @@ mod tests {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// An entry whose Python is a shell script that loads it, and runs `body` for request `$n`.
+    /// An entry whose Python is a shell script that loads, then runs `body` for request `$n`.
     fn entry(folder: &Path, body: &str, is_allowed: bool) -> Entry {
         let game = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/attack_1v1.toml");
         let scenario = scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"));

@@ -1,9 +1,8 @@
 //! Squall minds: the decision-makers of boats. Each boat has one; it receives a
 //! [`messages::Picture`] and returns an [`messages::Order`].
-//!
-//! A mind cannot tell a real sea from a simulated one: this crate never imports `sim`. Open
+//!  A mind cannot tell a real sea from a simulated one: this crate never imports `sim`. Open
 //! [`Mind`] first, then [`MindRunner`], which runs minds, then [`HelmMind`], which follows a
-//! strategy, then the behaviours, and then [`ivp`], which weighs them.
+//! strategy, the behaviours, and [`ivp`], which weighs them.
 
 mod behaviour;
 mod helm;
@@ -41,7 +40,7 @@ pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
     mind(scenario, vehicle, role, &mut Entries::default())
 }
 
-/// The mind that `strategy` assigns to this vehicle, whatever the scenario's own strategy.
+/// The mind that `strategy` assigns to this vehicle, whatever its own strategy in the scenario.
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
     let role = roles::role_in(scenario, vehicle, strategy);
     mind(scenario, vehicle, role, &mut Entries::default())
@@ -65,7 +64,7 @@ pub fn minds_for(
     vehicles.into_iter().map(&mut mind).collect()
 }
 
-/// A helm, or a policy that steers without one.
+/// A helm, or a policy that steers without a helm.
 fn mind(
     scenario: &Scenario,
     vehicle: VehicleId,

@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 /// The decision-maker of one boat.
 ///
-/// Identical pictures, words and proposals from the start must give identical orders on every
-/// machine. A mind reads no clock and takes randomness only from its own
+/// Given identical pictures, words and proposals from the start, it must return identical orders on
+/// every machine. A mind reads no clock and takes randomness only from its own
 /// [`primitives::stream::Stream`]. A mind whose decisions are made by other programs is only for
 /// games paced by a clock.
 pub trait Mind: Any + Send {
@@ -19,18 +19,18 @@ pub trait Mind: Any + Send {
     fn decide(&mut self, picture: &Picture) -> Order;
 
     /// Like [`Mind::decide`], with the same order. `view` is the team's view of the picture, if
-    /// known, for a mind that would otherwise work it out.
+    /// known, for a mind that would otherwise compute it.
     fn decide_in_team(&mut self, picture: &Picture, _view: Option<&Arc<TeamView>>) -> Order {
         self.decide(picture)
     }
 
-    /// The present view of its team, if the mind uses one.
+    /// The current view of the mind's team, if it uses one.
     fn team_view(&self) -> Option<TeamView> {
         None
     }
 
-    /// Whether the boat ever sends messages to its team; only then does it receive those of its
-    /// mates.
+    /// Whether the boat ever sends messages to its team; only then does it receive its teammates'
+    /// messages.
     fn shares(&self) -> bool {
         false
     }
@@ -43,7 +43,7 @@ pub trait Mind: Any + Send {
     /// Adds the messages to the team after a decision.
     fn send(&self, _messages: &mut Vec<Word>) {}
 
-    /// Receives the messages that mates sent after the previous decision.
+    /// Receives the messages that teammates sent after the previous decision.
     fn receive(&mut self, _messages: &[Word]) {}
 
     /// Receives a policy's proposal.
@@ -53,12 +53,13 @@ pub trait Mind: Any + Send {
     /// functions from the next decision on.
     fn show(&mut self, _shown: bool) {}
 
-    /// A mind in the same state that continues independently; `None` if this kind cannot be copied.
+    /// A mind in the same state that continues independently; `None` if the mind cannot be copied.
     fn fork(&self) -> Option<Box<dyn Mind>> {
         None
     }
 
-    /// The first fault of the program that decides for it, and the number of decisions with one.
+    /// The first fault of the program that decides for this mind, and the number of decisions with
+    /// a fault.
     fn faults(&self) -> Option<(String, u64)> {
         None
     }

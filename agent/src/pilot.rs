@@ -21,9 +21,9 @@ use std::collections::BTreeMap;
 /// How actions reach the boat.
 #[derive(Clone)]
 enum Control {
-    /// Directly: the boat turns as the action says until the next one, as in Pyquaticus.
+    /// Directly: the boat turns as ordered until the next action, as in Pyquaticus.
     Direct(Box<Situation>),
-    /// Through a helm, as a proposal that it weighs against safety; with a teacher, not at all.
+    /// Through a helm, as a proposal weighed against safety; with a teacher, not at all.
     Helm(Box<HelmMind>, Option<Teacher>),
 }
 
@@ -33,7 +33,7 @@ enum Control {
 struct Teacher {
     /// The option that each mode corresponds to, by mode index.
     options: Vec<Option<usize>>,
-    /// Its first action since the last observation, if the policy could have chosen that action.
+    /// The helm's first action since the last observation, if the policy could have chosen it.
     did: Option<Action>,
     is_observed: bool,
 }
@@ -62,8 +62,8 @@ impl Pilot {
     /// Actions become orders directly. A tagged boat is steered home regardless, because it can do
     /// nothing else.
     pub fn direct(scenario: &Scenario, vehicle: VehicleId, spaces: Spaces) -> Pilot {
-        // The drift is estimated because it is part of the observation, even if nothing compensates
-        // for it.
+        // The drift is estimated because it is part of the observation, although orders do not
+        // compensate for it.
         let situation = Situation::new(scenario, vehicle, role_of(scenario, vehicle), true);
         Pilot::new(Control::Direct(Box::new(situation)), spaces)
     }
@@ -115,7 +115,7 @@ impl Pilot {
         }
     }
 
-    /// The same pilot, with decisions made by a model: its most likely actions, or sampled ones.
+    /// The same pilot, with decisions made by a model: its most likely actions, or sampled actions.
     pub fn by_model(mut self, model: PolicyModel, is_sampled: bool) -> Pilot {
         self.policy = Some(BoardPolicy::new(model, is_sampled));
         self
@@ -163,7 +163,7 @@ impl Pilot {
         self.follow(Chosen::of(self.actions, action, self.situation()));
     }
 
-    /// Turns and drives like this from the next decision on.
+    /// Turns and drives as given from the next decision on.
     pub(crate) fn steer(&mut self, set_point: SetPoint) {
         self.set_point = set_point;
     }
@@ -173,7 +173,8 @@ impl Pilot {
         self.control.situation()
     }
 
-    /// Whether actions take effect: a tagged boat drives home, and one out of action stays still.
+    /// Whether actions take effect: a tagged boat drives home, and a boat out of action stays
+    /// still.
     pub fn obeys(&self) -> bool {
         let situation = self.control.situation();
         !situation.own.tagged && situation.fact(Fact::Disabled) == 0.0
@@ -204,7 +205,7 @@ impl Teacher {
     }
 }
 
-/// The action that comes nearest to an order.
+/// The action nearest to an order.
 fn steered(situation: &Situation, order: Order, actions: ActionSpace) -> Option<Action> {
     // A teacher's hold is not among the policy's actions, so imitation skips such a decision.
     let Order::Steer {

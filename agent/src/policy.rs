@@ -1,4 +1,4 @@
-//! A trained policy on board: at each of its decisions it receives an observation and chooses a
+//! A trained policy on board: at each of its decisions, it receives an observation and chooses a
 //! course and a speed.
 
 use crate::observation::Observer;
@@ -13,7 +13,7 @@ use thiserror::Error;
 /// Why a policy proposes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub(crate) enum PolicyFault {
-    /// The model was trained for another team size.
+    /// The model was trained for a different team size.
     #[error(
         "the model has {expected} inputs, but a boat in this game has {found} values: it was trained for a different team \
         size"
@@ -29,7 +29,7 @@ pub(crate) enum PolicyFault {
     NotFinite,
 }
 
-/// The time of the next decision; `None`: at once.
+/// The time of the next decision; `None` means at once.
 #[derive(Clone, Default)]
 pub(crate) struct Due(Option<SimTime>);
 
@@ -38,10 +38,10 @@ impl Due {
         self.0.is_none_or(|due| now >= due)
     }
 
-    /// Notes that a decision is made now.
+    /// Records that a decision is made now.
     pub(crate) fn advance(&mut self, now: SimTime, period: SimTime) {
-        // Counted from decision to decision, not from picture to picture: lost pictures shift
-        // nothing.
+        // Counted from decision to decision, not from picture to picture: lost pictures do not
+        // shift it.
         let next = self.0.unwrap_or(now) + period;
         // After a long gap, missed decisions are not made up.
         self.0 = Some(if next > now { next } else { now + period });
@@ -116,7 +116,8 @@ impl BoardPolicy {
         let output = self.network.output(self.model.output());
         let likeliest = action_of(&self.model, output)?;
         let action = if self.is_sampled {
-            // A separate stream for each boat: mates with the same network draw different actions.
+            // A separate stream for each boat: teammates with the same network draw different
+            // actions.
             let me = situation.model.me;
             let noise = Noise::new(situation.model.seed, &format!("policy/{}", me.index()));
             Action::drawn(output, noise.unit(self.decisions))
@@ -157,10 +158,10 @@ impl Chosen {
     }
 }
 
-/// Converts a network output to an action: the most likely discrete action.
+/// Converts a network output to an action; for discrete actions, the most likely one.
 fn action_of(model: &PolicyModel, output: &[f32]) -> Result<Action, PolicyFault> {
-    // Checked on each output: a network may overflow on inputs outside its training range, and the
-    // most likely action of NaN outputs would be the first.
+    // Check every output: a network may overflow on inputs outside its training range, and the most
+    // likely action of NaN outputs would be the first.
     if !output.iter().all(|number| number.is_finite()) {
         return Err(PolicyFault::NotFinite);
     }

@@ -5,11 +5,11 @@ use primitives::stream::Stream;
 use scenario::Scenario;
 use scenario::strategy::{Assignment, Program, Strategy};
 
-/// The role of a vehicle in the game that the scenario's seed chooses.
+/// The role of a vehicle in the game with the scenario's seed.
 ///
-/// The roles are dealt to the team's boats of the same strategy, in the scenario's order, and start
-/// again from the first when they run out. A seeded deal shuffles them with the team's own stream.
-/// Every mind of a team computes the same result on its own.
+/// The roles are dealt to the team's boats with the same strategy, in the scenario's order,
+/// restarting from the first role when they run out. A seeded deal shuffles them with the team's
+/// own stream. Every mind of a team computes the same result on its own.
 pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     let me = &scenario.vehicles[vehicle.index()];
     dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| {
@@ -17,8 +17,8 @@ pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     })
 }
 
-/// The role that `strategy` gives a vehicle with another strategy in the scenario, as if its whole
-/// team followed `strategy`.
+/// The role that `strategy` gives a vehicle with a different strategy in the scenario, as if its
+/// whole team followed `strategy`.
 pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
     dealt(scenario, vehicle, strategy, |_| true)
 }

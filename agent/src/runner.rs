@@ -1,8 +1,8 @@
-//! Runs minds, decision by decision: delivers mates' messages, then policy proposals; lets every
-//! mind decide; then collects the messages to its team.
+//! Runs minds, decision by decision: delivers teammates' messages, then policy proposals; lets
+//! every mind decide; then collects the messages to its team.
 //!
-//! No network and no clock. The arena, agent processes, replays and emulated boats all use this
-//! loop, so a game has the same bytes in each of them.
+//! Uses neither network nor clock. The arena, agent processes, replays and emulated boats all use
+//! this loop, so a game has the same bytes in each of them.
 
 use crate::mind::{Mind, Proposal};
 use crate::situation::TeamView;
@@ -32,9 +32,9 @@ impl<M: Mind + ?Sized> Boat<M> {
 #[derive(Clone)]
 struct Team {
     view: Arc<TeamView>,
-    /// The view before, whose memory the next one reuses.
+    /// The previous view, whose memory is reused for the next.
     before: Arc<TeamView>,
-    /// The picture that the view is of, in the present decision, by its place in memory.
+    /// The picture of the view in the current decision, identified by its address in memory.
     picture: Option<usize>,
 }
 
@@ -48,14 +48,14 @@ impl Team {
         }
     }
 
-    /// Takes in the team's picture; of several in one decision, the first.
+    /// Processes the team's picture; of several in one decision, only the first.
     fn take_in(&mut self, picture: &Picture) {
         if self.picture.is_some() || self.view.team().index() != usize::from(picture.team) {
             return;
         }
         self.picture = Some(std::ptr::from_ref(picture).addr());
         std::mem::swap(&mut self.view, &mut self.before);
-        // Still in use by a mind that has not had a picture since, if any.
+        // A mind that has not had a picture since may still use it.
         if Arc::get_mut(&mut self.view).is_none() {
             self.view = Arc::new(TeamView::clone(&self.before));
         }
@@ -81,7 +81,7 @@ pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
     threads: usize,
 }
 
-/// Number of minds from which starting threads costs less than it saves.
+/// Number of minds above which threads save more time than starting them takes.
 const MINDS_MIN: usize = 16;
 
 impl<M: Mind + ?Sized> MindRunner<M> {
@@ -144,14 +144,14 @@ impl<M: Mind + ?Sized> MindRunner<M> {
             .map(|boat| &mut *boat.mind)
     }
 
-    /// Gives a boat another mind from the next decision on.
+    /// Gives a boat a different mind from the next decision on.
     pub fn replace(&mut self, vehicle: VehicleId, mind: Box<M>) {
         if let Some(boat) = self.boats.iter_mut().find(|boat| boat.vehicle == vehicle) {
             boat.mind = mind;
         }
     }
 
-    /// Delivers messages that mates in other processes sent after the previous decision. Minds
+    /// Delivers messages that teammates in other processes sent after the previous decision. Minds
     /// ignore messages of the other team.
     pub fn receive(&mut self, messages: &[Word]) {
         if !messages.is_empty() {
@@ -180,7 +180,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     }
 
     /// Lets every mind decide on its boat's picture, which has this stamp; a boat without a picture
-    /// holds. Mates in this process receive the resulting messages at the next decision.
+    /// holds. Teammates in this process receive the resulting messages at the next decision.
     pub fn decide<'p>(
         &mut self,
         stamp: Stamp,
@@ -201,7 +201,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
                 .iter_mut()
                 .map(|boat| (picture_of(boat.vehicle), boat))
                 .collect();
-            // In small parts, as threads get to them: some boats take several times as long as others.
+            // In small parts, as threads become free: some boats take several times as long as
+            // others.
             let parts = Mutex::new(all.chunks_mut(MINDS_MIN / 2));
             let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
             let work = || {
@@ -220,14 +221,14 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);
         sent.clear();
-        // After all have decided: mates receive a boat's messages at the next decision, in one
+        // After all have decided: teammates receive a boat's messages at the next decision, in one
         // process as across several, for any order of the minds.
         self.boats.iter().for_each(|boat| boat.mind.send(&mut sent));
         self.receive(&sent);
         self.sent = sent;
     }
 
-    /// The boats whose program had faults, each with the first and their number.
+    /// The boats whose programs had faults, each with the first fault and the number of faults.
     pub fn faults(&self) -> impl Iterator<Item = (VehicleId, String, u64)> {
         self.minds().filter_map(|(vehicle, mind)| {
             let (first, count) = mind.faults()?;
@@ -253,7 +254,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     /// The orders of the last decision as a message to the sim that issued this ticket, identical
     /// on every call. `None` before the first decision.
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
-        // With the picture's own time and number, by which the sim identifies the answered tick.
+        // With the picture's own time and number, from which the sim identifies the answered tick.
         let stamp = Stamp {
             version: Orders::VERSION,
             ..self.decided?
@@ -294,8 +295,7 @@ mod tests {
     use super::*;
     use primitives::SimTime;
 
-    /// Orders the proposed speed plus the values it has received, and sends its number of
-    /// decisions.
+    /// Orders the proposed speed plus the values received, and sends its number of decisions.
     struct Adder {
         me: VehicleId,
         decisions: f64,

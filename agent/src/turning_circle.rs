@@ -1,4 +1,4 @@
-//! Warnings about points of a strategy within a boat's turning circle, which the boat cannot reach.
+//! Warnings about points of a strategy inside a boat's turning circle, which the boat cannot reach.
 
 use crate::behaviour::corners_of;
 use crate::roles::role_of;
@@ -8,14 +8,14 @@ use scenario::Scenario;
 use scenario::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
 use std::collections::BTreeSet;
 
-/// Warnings about a valid game: what each boat's role requires but the boat cannot do.
+/// Warnings about a valid game: requirements of each boat's role that the boat cannot meet.
 ///
 /// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once for the
-/// next one. If that lies inside this turning circle by more than the capture radius, the boat
-/// circles it or misses it. Only points that are constant throughout the game are checked.
+/// next one. If that point lies inside this turning circle by more than the capture radius, the
+/// boat circles it or misses it. Only points that are constant throughout the game are checked.
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
-    // Boats of one role have the same warning: listed once, in a fixed order.
+    // Boats with the same role have the same warning, listed once and in a fixed order.
     let warnings: BTreeSet<String> = boats
         .flat_map(|vehicle| of_boat(scenario, vehicle))
         .collect();
@@ -50,7 +50,7 @@ fn of_boat(scenario: &Scenario, vehicle: VehicleId) -> Vec<String> {
     program.behaviours.iter().filter_map(warning).collect()
 }
 
-/// The points of a path if constant, whether it repeats, its speed and its capture radius.
+/// The points of a path if they are constant, whether it repeats, its speed and its capture radius.
 fn way<'a>(
     task: &'a Task,
     situation: &Situation,
@@ -101,7 +101,7 @@ fn fixed(place: &Place, situation: &Situation) -> Option<Ned> {
         .map(|point| point.at)
 }
 
-/// Indices of the points within the turning circle of a boat that reaches the previous point
+/// Indices of the points inside the turning circle of a boat that reaches the previous point
 /// straight from the one before.
 fn beyond_reach(points: &[Ned], again: bool, circle_m: f64, capture_m: f64) -> Vec<usize> {
     let count = points.len();
@@ -162,7 +162,7 @@ mod tests {
                 "{what}"
             );
         }
-        // On a repeated small square every corner is out of reach.
+        // On a small repeated square, every corner is out of reach.
         let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]
             .map(|(north, east)| Ned { north, east });
         assert_eq!(beyond_reach(&square, true, 10.0, 1.0), [0, 1, 2, 3]);

@@ -10,12 +10,12 @@ use primitives::frame::{Ned, Rotation, body_from_ned};
 pub(crate) struct BowWatch {
     rules: Halt,
     half_length_m: f64,
-    /// When a boat was last in it.
+    /// When another boat was last in the box.
     blocked_at: SimTime,
 }
 
 impl BowWatch {
-    /// The box for a boat of this length.
+    /// The box for a boat of the given length.
     pub(crate) fn new(rules: Halt, length_m: f64) -> BowWatch {
         BowWatch {
             rules,
@@ -26,8 +26,8 @@ impl BowWatch {
 
     /// Whether another boat is in the box, or was within the last `clear_s`.
     pub(crate) fn is_blocked(&mut self, now: SimTime, nav: &Nav, others: &[Ned]) -> bool {
-        // A box of zero length disables the check: fleets that keep clear by themselves do not need
-        // it.
+        // A box of zero length disables the check, for fleets whose boats avoid each other by
+        // themselves.
         if self.rules.ahead_m <= 0.0 {
             return false;
         }

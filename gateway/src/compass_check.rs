@@ -2,10 +2,10 @@
 //! from leeway and current?
 //!
 //! On one heading, a compass offset cannot be distinguished from a cross current. On several
-//! headings it can: a current is the same on all of them, an offset turns with the boat. With the
-//! velocity over the ground V, the compass heading psi and the speed through the water m expected
-//! from the orders, V = k m exp(i psi) + c. The drift c (current, leeway) is the same on all
-//! headings, |k| is the fraction of the speed that the boat makes, and the angle of k is the
+//! headings it can: a current is the same on all of them, whereas an offset turns with the boat.
+//! With the velocity over the ground V, the compass heading psi and the speed through the water m
+//! expected from the orders, V = k m exp(i psi) + c. The drift c (current, leeway) is the same on
+//! all headings, |k| is the fraction of the speed that the boat makes, and the angle of k is the
 //! compass offset: complex linear least squares.
 
 use primitives::SimTime;
@@ -13,7 +13,7 @@ use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Rotation};
 use std::collections::VecDeque;
 
-/// Number and duration, s, of the pieces of a straight run; the first lets the boat settle.
+/// Number and duration (s) of the pieces of a straight run; the boat settles during the first.
 const PIECES: usize = 4;
 const PIECE_S: f64 = 1.5;
 /// Maximum spread of the headings of its pieces, rad.
@@ -22,20 +22,20 @@ const STRAIGHT_RAD: f64 = 0.3;
 const SPEED_FROM_M_S: f64 = 0.7;
 /// A boat reaches its speed with about this lag, s.
 const SPEED_LAG_S: f64 = 2.0;
-/// Orders and velocities with a longer gap between them belong to different runs, s.
+/// Maximum gap between orders and velocities of the same run, s.
 const GAP_MAX_S: f64 = 1.5;
-/// Maximum number and age, s, of the runs: currents change.
+/// Maximum number of runs, and their maximum age (s), since currents change.
 const RUNS_MAX: usize = 40;
 const RUN_AGE_MAX_S: f64 = 240.0;
 /// Minimum number of runs.
 const RUNS_MIN: usize = 6;
-/// Minimum scatter of the runs' velocities, m/s, because a few may agree by chance.
+/// Minimum scatter of the runs' velocities, m/s: a few runs may agree by chance.
 const SCATTER_MIN_M_S: f64 = 0.15;
-/// An offset is a fault if it exceeds this angle, rad, by this many standard deviations:
-/// consecutive runs are correlated. In a simulated day in a gale (`tests/gale`), 4.5 were too few.
+/// An offset is a fault if it exceeds this angle (rad) by this many standard deviations.
+/// Consecutive runs are correlated. In a simulated day in a gale (`tests/gale`), 4.5 were too few.
 const OFFSET_MAX_RAD: f64 = 0.25;
 const SIGMAS: f64 = 5.0;
-/// Maximum length of the mean of all headings as unit vectors: they are about 60 degrees apart.
+/// Maximum length of the mean of all headings as unit vectors: 0.88 for headings 60 degrees apart.
 const MEAN_HEADING_MAX: f64 = 0.88;
 /// A boat that makes a smaller fraction of its ordered speed reveals nothing about its compass.
 const SHARE_MIN: f64 = 0.2;
@@ -61,32 +61,31 @@ struct Run {
     velocity: Ned,
 }
 
-/// The data on a boat's compass.
+/// The data for the check of a boat's compass.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CompassCheck {
     /// Start of the current piece, and its last update.
     began: Option<(SimTime, SimTime)>,
     piece: Piece,
     pieces: VecDeque<Piece>,
-    /// The ordered speed with the boat's lag, m/s.
+    /// The ordered speed, delayed by the boat's lag, m/s.
     speed_m_s: f64,
     runs: VecDeque<Run>,
 }
 
 impl CompassCheck {
-    /// Adds the compass heading, rad, the velocity over the ground and the ordered speed ahead.
+    /// Adds the compass heading (rad), the velocity over the ground and the ordered forward speed.
     pub(crate) fn observe(&mut self, now: SimTime, psi_rad: f64, velocity: Ned, ordered_m_s: f64) {
         let gap_s = self
             .began
             .map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
-        // The sums of a piece assume steady flow: across a gap the boat may have turned.
+        // The sums of a piece assume steady flow; across a gap the boat may have turned.
         if gap_s > GAP_MAX_S {
             self.interrupt();
             self.speed_m_s = ordered_m_s;
         } else {
-            // The log of a Surveyor is the GPS, so the speed through the water is not measured.
-            // The order, delayed as the boat follows it, stands in; its scale does not matter,
-            // only its direction.
+            // A Surveyor takes its log speed from GPS, so its speed through the water is unknown.
+            // The delayed order replaces it; only its direction matters, not its scale.
             self.speed_m_s += (ordered_m_s - self.speed_m_s) * (gap_s / SPEED_LAG_S).min(1.0);
         }
         let (began, _) = self.began.unwrap_or((now, now));
@@ -103,7 +102,7 @@ impl CompassCheck {
         }
     }
 
-    /// Starts another run: the boat was stopped, or its receiver jumped.
+    /// Starts a new run, because the boat was stopped or its receiver jumped.
     pub(crate) fn interrupt(&mut self) {
         (self.began, self.piece) = (None, Piece::default());
         self.pieces.clear();
@@ -135,9 +134,8 @@ impl CompassCheck {
             velocity: velocity.scaled(1.0 / count),
         };
         if is_straight && run.ordered.length() >= SPEED_FROM_M_S {
-            // The last piece of this run is the first of the next.
-            // A piece in two runs would count twice; the last piece only serves as the lead-in
-            // of the next.
+            // The last piece of this run is the first of the next, where it only serves as the
+            // lead-in. Otherwise it would count twice.
             self.pieces.drain(..PIECES - 1);
             self.runs.push_back(run);
         }
@@ -151,8 +149,8 @@ impl CompassCheck {
         }
     }
 
-    /// The compass offset, rad, with its standard deviation: add it to the compass heading to get
-    /// the true one.
+    /// The compass offset (rad) with its standard deviation; add it to the compass heading to get
+    /// the true heading.
     pub(crate) fn offset_rad(&self) -> Option<(f64, f64)> {
         if self.runs.len() < RUNS_MIN {
             return None;
@@ -165,8 +163,8 @@ impl CompassCheck {
                 .scaled(1.0 / count)
         };
         let heading = mean(|run| run.ordered.scaled(1.0 / run.ordered.length()));
-        // On one heading an offset and a cross current are the same. A plain limit for the angle
-        // between heading and course either misses 30 degrees or fails in a current.
+        // On one heading, an offset cannot be told from a cross current. A plain limit for the
+        // angle between heading and course either misses 30 degrees or fails in a current.
         if heading.length() > MEAN_HEADING_MAX {
             return None;
         }
@@ -175,7 +173,7 @@ impl CompassCheck {
         let mut share = Ned::default();
         let mut spread = 0.0;
         for run in &self.runs {
-            // Subtracting the means removes the drift c, whatever it is.
+            // Subtracting the means removes the drift c, whatever its value.
             let z = run.ordered - ordered;
             let v = run.velocity - velocity;
             share = share + over(v, z);
@@ -188,17 +186,17 @@ impl CompassCheck {
             let left = v - times(share, z);
             left.dot(left)
         });
-        // Of two components each, four numbers were fitted.
+        // The runs have two components each; four parameters were fitted.
         let scatter_m_s = (rest.sum::<f64>() / (2.0 * count - 4.0))
             .sqrt()
             .max(SCATTER_MIN_M_S);
-        // To first order the error of the angle of k is its error across, over its length.
+        // To first order, the error of the angle of k is its cross error divided by its length.
         let sigma_rad = scatter_m_s / (spread.sqrt() * share.length());
         (share.length() >= SHARE_MIN && sigma_rad.is_finite())
             .then(|| (share.direction_rad(), sigma_rad))
     }
 
-    /// The compass offset, rad, if it is a fault.
+    /// The compass offset (rad), if it is large enough to be a fault.
     pub(crate) fn fault_rad(&self) -> Option<f64> {
         let (offset_rad, sigma_rad) = self.offset_rad()?;
         // Deviations of up to 14 degrees are not a fault: such a boat can be driven, and a compass
@@ -215,7 +213,7 @@ fn times(a: Ned, b: Ned) -> Ned {
     }
 }
 
-/// The product of the first and the conjugate of the second.
+/// The product of `a` and the conjugate of `b`.
 fn over(a: Ned, b: Ned) -> Ned {
     times(
         a,
@@ -230,8 +228,8 @@ fn over(a: Ned, b: Ned) -> Ned {
 mod tests {
     use super::*;
 
-    /// Runs of 24 s on these headings at 1.5 m/s, of which the boat makes this fraction, with a
-    /// compass offset and a current.
+    /// Runs of 24 s on these headings, ordered at 1.5 m/s and driven at a fraction of that speed,
+    /// with a compass offset and a current.
     fn sailed(headings_deg: &[f64], off_deg: f64, share: f64, current: Ned) -> CompassCheck {
         let mut check = CompassCheck::default();
         for i in 0..240 * headings_deg.len() {

@@ -13,8 +13,8 @@ use world_magnetic_model::uom::si::f32::{Angle, Length};
 use world_magnetic_model::uom::si::length::meter;
 
 /// First and last year of WMM2025.
-// The field changes from year to year, and the model covers five years: a later date is rejected
-// rather than extrapolated. The file can state the declination instead.
+// The declination changes from year to year, and the model covers five years. Later dates are
+// rejected rather than extrapolated; the file can state the declination instead.
 const YEARS: (u16, u16) = (2025, 2029);
 
 /// Why the declination is unknown.
@@ -35,7 +35,8 @@ pub enum DeclinationError {
 /// [`DeclinationError`] for a date before 2025 or after 2029, or a position off the globe.
 pub fn declination_deg(at: LatLon, date: Date) -> Result<f64, DeclinationError> {
     let day = day(date).ok_or(DeclinationError::Date(date))?;
-    // The model uses single precision: 1 m of position, far below its own error.
+    // The model uses single precision, which is accurate to 1 m of position, far below its own
+    // error.
     let lat = Angle::new::<degree>(at.lat_deg as f32);
     let lon = Angle::new::<degree>(at.lon_deg as f32);
     let field = GeomagneticField::new(Length::new::<meter>(0.0), lat, lon, day);

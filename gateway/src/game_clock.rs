@@ -1,15 +1,14 @@
-//! The game time as known to a gateway: from the sim's answer to a join, from the stamps of orders,
+//! The game time as a gateway knows it: from the sim's answer to a join, from the stamps of orders,
 //! and from its own clock.
 
 use messages::external::ExternalOrder;
 use primitives::SimTime;
 
 /// Detects orders with a time that the game cannot have reached, or from before the boat joined.
-///
-/// The game runs no faster than the gateway's clock, so their difference can only shrink: by
-/// delays, pauses, and a sim that does not keep up. The largest observed difference is the best
-/// estimate. When the boat joins, the difference is at most that between the time in the sim's
-/// answer and our own time of the request.
+/// The game runs at most as fast as the gateway's clock, so game time minus gateway time only
+/// falls: by delays, pauses, and a sim that does not keep up. The largest observed difference is
+/// the best estimate. When the boat joins, the difference is at most that between the time in the
+/// sim's answer and our own time of the request.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GameClock {
     ahead_max: SimTime,
@@ -19,9 +18,9 @@ pub(crate) struct GameClock {
 /// The state of a game that the boat has joined.
 #[derive(Clone, Copy, Debug)]
 struct Joined {
-    /// Game time then.
+    /// Game time at that moment.
     since: SimTime,
-    /// Game time minus our own: the maximum, as far as orders have shown it.
+    /// Maximum of game time minus our own, as far as known from orders.
     most: SimTime,
     seen: Option<SimTime>,
 }
@@ -33,12 +32,12 @@ pub(crate) enum OrderTime {
     Plausible,
     /// The game has not reached this time, or has not sent the picture that the order answers.
     Ahead,
-    /// It is from before the boat joined, or the boat has not joined.
+    /// The order is from before the boat joined, or the boat has not joined.
     BeforeJoining,
 }
 
 impl GameClock {
-    /// A clock without a game yet, which accepts stamps ahead of it by at most this much.
+    /// A clock without a game yet, which accepts stamps at most this far ahead of it.
     pub(crate) fn new(ahead_max: SimTime) -> GameClock {
         GameClock {
             ahead_max,
@@ -46,11 +45,11 @@ impl GameClock {
         }
     }
 
-    /// Records that the boat, which made its request at our own time `asked`, has joined a game
-    /// whose time was `since` at some moment after that.
+    /// Records that the boat, which sent its request at our time `asked`, has joined a game whose
+    /// time was `since` at some later moment.
     pub(crate) fn join(&mut self, asked: SimTime, since: SimTime) {
-        // The answer was created after the request, so the game cannot be further ahead of our
-        // clock than this. The answer's travel time is unknown, and only makes the bound safer.
+        // The answer was created after the request, so the game is at most this far ahead of our
+        // clock. The answer's travel time is unknown, and only makes the bound safer.
         let most = SimTime(since.0.saturating_sub(asked.0));
         self.joined = Some(Joined {
             since,
@@ -69,18 +68,18 @@ impl GameClock {
         if stamp < joined.since {
             return OrderTime::BeforeJoining;
         }
-        // Anyone may have sent it, with any number.
+        // Anyone may have sent it, with any stamp.
         let difference = SimTime(stamp.0.saturating_sub(now.0));
         let known = joined.seen.unwrap_or(joined.most);
-        // An order far in the future would count as newer than all later real ones, and silence the
-        // sim until then.
+        // An order far in the future would count as newer than all later real ones, and block the
+        // sim's orders until then.
         if given > stamp
             || stamp >= SimTime::NEVER
             || difference.0.saturating_sub(known.0) > self.ahead_max.0
         {
             return OrderTime::Ahead;
         }
-        // Only the largest difference is kept: a game that pauses or slows down falls behind our
+        // Keep only the largest difference: a game that pauses or slows down falls behind our
         // clock, which is not suspicious.
         joined.seen = Some(joined.seen.map_or(difference, |seen| seen.max(difference)));
         OrderTime::Plausible
@@ -137,7 +136,7 @@ mod tests {
             OrderTime::Ahead,
             "it answers a picture that does not exist yet"
         );
-        // Late orders, punctual ones after them, a pause of the game, and its continuation.
+        // Late orders, then punctual ones, a pause of the game, and its continuation.
         for (now_s, stamp_s) in [
             (100.1, 7.1),
             (103.0, 7.2),
@@ -184,7 +183,7 @@ mod tests {
 
     #[test]
     fn an_answer_that_took_its_time_refuses_nothing_that_the_sim_orders() {
-        // Asked at 100 s; answered, at 7 s of the game, five seconds later.
+        // Requested at 100 s; answered five seconds later, at 7 s of the game.
         let mut clock = joined(100.0, 7.0);
         assert_eq!(check(&mut clock, 105.0, 7.0, 6.9), OrderTime::Plausible);
         assert_eq!(check(&mut clock, 105.1, 7.1, 7.0), OrderTime::Plausible);

@@ -4,11 +4,11 @@
 //! 2013, by geographiclib): the azimuthal equidistant map. Everything on one bearing from the datum
 //! is on one line, at its true distance.
 //!
-//! - A plane that touches the ellipsoid at the datum (ENU) is `s^3 / 6 R^2` shorter: 4 um at 1 km,
-//!   4 mm at 10 km.
-//! - MOOS's `LatLong2LocalGrid` uses a sphere with the ellipsoid's radius at that latitude, and is
-//!   not this map: 200 m from a datum at 42 degrees north it is 0.4 m off. Boats that share a field
-//!   must share the map.
+//! - On a plane that touches the ellipsoid at the datum (ENU), distances are `s^3 / 6 R^2` shorter:
+//! 4 um at 1 km, 4 mm at 10 km.
+//! - MOOS's `LatLong2LocalGrid` is a different map, of a sphere with the ellipsoid's radius at that
+//! latitude: 200 m from a datum at 42 degrees north it is 0.4 m off. Boats on one field must use
+//! the same map.
 
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use primitives::{LatLon, Ned};
@@ -23,8 +23,8 @@ pub struct LocalFrame {
 impl LocalFrame {
     /// The map around `datum`.
     pub fn new(datum: LatLon) -> LocalFrame {
-        // By geographiclib rather than a tangent plane of our own, which would be accurate enough
-        // for a field but one more thing to test.
+        // geographiclib rather than a tangent plane of our own, which would be accurate enough for
+        // a field but would need its own tests.
         LocalFrame {
             datum,
             earth: Geodesic::wgs84(),
@@ -41,7 +41,7 @@ impl LocalFrame {
         Ned::toward_deg(azimuth_deg).scaled(distance_m)
     }
 
-    /// The position of a point of the field, longitude in -180 to 180.
+    /// The position of a point of the field, longitude from -180 to 180.
     pub fn lat_lon(&self, at: Ned) -> LatLon {
         let azimuth_deg = at.direction_rad().to_degrees();
         let (lat_deg, lon_deg) = self.earth.direct(
@@ -60,7 +60,7 @@ mod tests {
     use primitives::math;
     use proptest::prelude::*;
 
-    /// The pavilion from which MIT's missions are measured.
+    /// The datum of MIT's missions, a pavilion.
     const PAVILION: LatLon = LatLon {
         lat_deg: 42.358436,
         lon_deg: -71.087448,
@@ -69,7 +69,7 @@ mod tests {
     /// A tenth of the width of a hair.
     const HAIR_M: f64 = 1e-5;
 
-    /// A point in the plane that touches the ellipsoid at the datum, by way of earth-centred
+    /// A point on the plane that touches the ellipsoid at the datum, computed in earth-centred
     /// coordinates.
     fn tangent(datum: LatLon, at: LatLon) -> Ned {
         let equator_m = 6_378_137.0;
@@ -96,7 +96,7 @@ mod tests {
         }
     }
 
-    /// `CMOOSGeodesy::LatLong2LocalGrid`, as boats with a MOOS back seat compute their position.
+    /// `CMOOSGeodesy::LatLong2LocalGrid`, which boats with a MOOS back seat use for their position.
     fn moos(datum: LatLon, at: LatLon) -> Ned {
         let a = 6_378_137.0_f64;
         let b = 6_356_752.0_f64;

@@ -1,9 +1,9 @@
 //! The gateway to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated
 //! boat.
 //!
-//! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how reports, orders and
-//! navigation meet), then [`protocol`] and [`nmea`]. `emulator` is the boat's end of the link.
-//! Sockets and clocks are only in [`link`] and `node`.
+//! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (which combines reports,
+//! orders and navigation), then [`protocol`] and [`nmea`]. `emulator` is the boat's end of the
+//! link. Sockets and clocks are only in [`link`] and `node`.
 
 mod bow_watch;
 pub mod bridge;

@@ -1,8 +1,8 @@
-//! The charge of a lithium battery by its voltage.
+//! The charge of a lithium battery from its voltage.
 
 use primitives::math;
 
-/// Voltage of a cell at rest, by the fraction of charge left: typical of NMC cells.
+/// Voltage of a cell at rest by the fraction of charge left; typical of NMC cells.
 const CELL_V: [(f64, f64); 9] = [
     (0.0, 3.00),
     (0.05, 3.30),
@@ -21,8 +21,8 @@ pub(crate) fn cell_volts(left: f64) -> f64 {
     math::interpolate(CELL_V, left)
 }
 
-/// The fraction of charge left in a cell of this voltage at rest, V; `None` if it cannot be that of
-/// a lithium cell. Under load it is too low.
+/// The fraction of charge left in a cell with this voltage at rest (V); `None` if a lithium cell
+/// cannot have this voltage. Under load, the result is too low.
 pub(crate) fn charge_left(cell_v: f64) -> Option<f64> {
     let charge = math::interpolate(CELL_V.map(|(left, volts)| (volts, left)), cell_v);
     (2.5..=4.4).contains(&cell_v).then_some(charge)

@@ -11,22 +11,22 @@ use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::collections::VecDeque;
 
-/// The time over which positions yield a speed, s; less is not enough.
+/// Minimum time over which positions yield a speed, s.
 const WINDOW_S: f64 = 4.0;
 const WINDOW_MIN_S: f64 = 2.0;
 /// Maximum number of positions stored: 20 a second.
 const FIXES_MAX: usize = 80;
-/// The reported speed may be lower than the speed from positions by this much, m/s, for this long,
-/// s: a fix may step by a few metres.
-// At these limits no sea, wind or step of a fix alone triggers them: a false alarm stops a boat in
-// a game.
+/// How far (m/s) and for how long (s) the reported speed may be below the speed from positions: a
+/// fix may step by a few metres.
+// At these limits no sea, wind or step of a fix alone triggers an alarm: a false alarm stops a boat
+// in a game.
 const SPEED_GAP_M_S: f64 = 1.2;
 const SPEED_GAP_S: f64 = 2.5;
-/// Minimum speed for a course, m/s.
+/// Minimum speed at which a course is meaningful, m/s.
 const COURSE_FROM_M_S: f64 = 0.8;
-/// Courses of fixes farther apart than this, s, are not compared.
+/// Maximum time between two fixes whose courses are compared, s.
 const COURSE_GAP_MAX_S: f64 = 1.0;
-/// A turn of the course by this much without any change of the compass is a fault, rad.
+/// Turn of the course without any change of the compass that counts as a fault, rad.
 const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_3;
 
 /// A boat's motion according to each instrument.
@@ -34,16 +34,16 @@ const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_3;
 pub(crate) struct MotionCheck {
     /// Positions, the newest last.
     fixes: VecDeque<(SimTime, Ned)>,
-    /// Since when the reported speed has been lower than that of the positions.
+    /// When the reported speed first fell below the speed from positions.
     slow_since: Option<SimTime>,
     /// The compass heading, rad, and the turn of the course since it last changed, rad.
     shown: Option<(f64, f64)>,
-    /// The last course, rad, its time, and whether it was a reported one.
+    /// The last course (rad), its time, and whether it was reported.
     course: Option<(SimTime, bool, f64)>,
 }
 
 impl MotionCheck {
-    /// Adds a position, with its reported velocity if any.
+    /// Adds a position, with the reported velocity if any.
     pub(crate) fn take_fix(&mut self, now: SimTime, place: Ned, reported: Option<Ned>) {
         while self
             .fixes
@@ -59,8 +59,7 @@ impl MotionCheck {
             measured.length() - reported.length() > SPEED_GAP_M_S
         });
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
-        // A stepping fix implies a course that is not the boat's, so the reported velocity takes
-        // precedence.
+        // A stepping fix implies a wrong course, so the reported velocity takes precedence.
         self.take_course(
             now,
             reported.is_some(),
@@ -72,8 +71,8 @@ impl MotionCheck {
 
     fn take_course(&mut self, now: SimTime, is_reported: bool, velocity: Option<Ned>) {
         let course_rad = velocity.map(Ned::direction_rad);
-        // Between distant fixes a boat may have gone astern, and positions step where the reported
-        // velocity does not.
+        // Between distant fixes a boat may have gone astern, and positions step although the
+        // reported velocity does not.
         let is_like = |at: SimTime, reported: bool| {
             (now - at).as_s() <= COURSE_GAP_MAX_S && reported == is_reported
         };
@@ -83,30 +82,29 @@ impl MotionCheck {
         if let (Some((_, turned_rad)), Some((.., before_rad)), Some(now_rad)) =
             (&mut self.shown, before, course_rad)
         {
-            // Summed with its sign: waves swing the course back and forth by more than 60 degrees
-            // in total, whereas a turn leads away.
+            // Sum with signs: waves swing the course back and forth by more than 60 degrees in
+            // total, whereas a turn accumulates.
             *turned_rad += wrap_pi(now_rad - before_rad);
         }
         self.course = course_rad.map(|course_rad| (now, is_reported, course_rad));
     }
 
-    /// Adds a compass heading, rad.
+    /// Adds a compass heading (rad).
     pub(crate) fn take_heading(&mut self, psi_rad: f64) {
-        // Exactly the same value: the last digit of a working compass changes all the time.
+        // Compare exactly: the last digit of a working compass changes all the time.
         if self.shown.is_none_or(|(shown_rad, _)| shown_rad != psi_rad) {
             self.shown = Some((psi_rad, 0.0));
         }
     }
 
-    /// Records that the receiver's position has jumped: older positions no longer yield the boat's
-    /// speed.
+    /// Records that the receiver's position has jumped: older positions no longer yield a speed.
     pub(crate) fn jump(&mut self) {
         self.fixes.clear();
         (self.slow_since, self.course) = (None, None);
     }
 
-    /// Velocity over the ground from positions alone, m/s: from the centre of the older ones to
-    /// that of the newer.
+    /// Velocity over the ground from positions alone, m/s: from the centre of the older positions
+    /// to that of the newer ones.
     pub(crate) fn velocity_m_s(&self) -> Option<Ned> {
         let (first, _) = self.fixes.front()?;
         let (last, _) = self.fixes.back()?;
@@ -114,7 +112,7 @@ impl MotionCheck {
             return None;
         }
         // The means of both halves, not the first and last fix: a single step of the receiver would
-        // count as a speed.
+        // look like speed.
         let half = self.fixes.len() / 2;
         let middle = |fixes: &mut dyn Iterator<Item = &(SimTime, Ned)>| {
             let mut count = 0.0;
@@ -131,7 +129,7 @@ impl MotionCheck {
         Some((newer - older).scaled(1.0 / (newer_s - older_s)))
     }
 
-    /// The present fault.
+    /// The current fault.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
         let turned = self
             .shown
@@ -183,7 +181,7 @@ mod tests {
                 "{turn_deg_s}"
             );
         }
-        // A compass with a large offset that turns is not stuck, nor that of a boat that goes
+        // A compass with a large offset that turns is not stuck, nor is that of a boat that drives
         // straight or lies still.
         assert_eq!(
             circle(2.6, 20.0, |course_deg| course_deg + 70.0, Some),

@@ -1,8 +1,8 @@
 //! The navigation estimate of a real boat, from its reports, with their faults.
 //!
-//! Position and velocity over the ground are those of the last good fix, heading and rate of turn
-//! those of the last attitude. Bad data is reported as a [`NavFault`], never covered up: a repeated
-//! or doubtful fix does not make the last one younger.
+//! Position and velocity over the ground come from the last good fix, heading and rate of turn from
+//! the last attitude. Bad data is reported as a [`NavFault`], never hidden: a repeated or doubtful
+//! fix does not refresh the last good one.
 
 use crate::compass_check::CompassCheck;
 use crate::config::NavWatch;
@@ -17,17 +17,17 @@ use primitives::SimTime;
 use primitives::angle::{rad_from_compass_deg, wrap_pi};
 use primitives::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
 
-/// After a jump the position must be consistent for this long before it is believed again, s.
+/// Time for which the position must be consistent after a jump to be trusted again, s.
 const JUMP_MEMORY_S: f64 = 2.0;
-/// A reported velocity is used for this long; then it is computed from the change of position, s.
+/// Lifetime of a reported velocity; then it is computed from changes of position, s.
 const VELOCITY_AGE_MAX_S: f64 = 1.5;
 /// Valid compass readings, degrees; other values count as missing.
 pub(crate) const HEADINGS_DEG: std::ops::RangeInclusive<f64> = -180.0..=360.0;
-/// The boat counts as under thrust for this long after the last command with thrust, s.
+/// Time after the last command with thrust for which the boat counts as under thrust, s.
 const THRUST_MEMORY_S: f64 = 0.5;
-/// From this speed of a command on, the position must change, m/s.
+/// Commanded speed from which the position must change, m/s.
 const THRUST_FROM_M_S: f64 = 0.5;
-/// A command is valid for this long, s.
+/// Lifetime of a command, s.
 const ORDERED_MEMORY_S: f64 = 1.5;
 
 /// A valid fix.
@@ -51,7 +51,7 @@ struct Heading {
 pub(crate) struct NavEstimator {
     frame: LocalFrame,
     watch: NavWatch,
-    /// From magnetic (or whatever the boat's compass shows) to true, rad.
+    /// Correction from the boat's compass reference, such as magnetic north, to true north, rad.
     compass_to_true_rad: f64,
     speed_max_m_s: f64,
     known: Known,
@@ -68,11 +68,11 @@ struct Known {
     heading: Option<Heading>,
     /// The fault of the receiver's last fix, if any.
     doubt: Option<NavFault>,
-    /// Quality and dilution of the last fix that reported them.
+    /// Quality and dilution from the last fix that reported them.
     told: Option<(Option<FixQuality>, Option<f64>)>,
     jumped: Option<(SimTime, f64)>,
     time_of_fix: Option<TimeOfDay>,
-    /// Since when the position has been the same to the last digit under thrust.
+    /// When the position last changed in any digit under thrust.
     still_since: Option<SimTime>,
     motion: MotionCheck,
     compass: CompassCheck,
@@ -104,8 +104,7 @@ impl NavEstimator {
         self.frame.ned(LatLon { lat_deg, lon_deg })
     }
 
-    /// Discards everything: the next data may come from another boat, or from the same one
-    /// elsewhere.
+    /// Discards all data: the next may come from a different boat, or from the same boat elsewhere.
     pub(crate) fn forget(&mut self) {
         self.known = Known::default();
     }
@@ -134,7 +133,7 @@ impl NavEstimator {
         }
     }
 
-    /// The order that the boat does not follow.
+    /// The order that the boat fails to follow.
     pub(crate) fn thrust_fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.known.thrust.fault(now)
     }
@@ -169,7 +168,7 @@ impl NavEstimator {
             .map_or_else(Ned::default, |(_, velocity)| velocity)
     }
 
-    /// Velocity over the ground, m/s, for stopping in time: the reported one, or that of the
+    /// Velocity over the ground for stopping in time, m/s: the reported velocity, or that from
     /// positions if it is faster.
     pub(crate) fn fastest_velocity_m_s(&self) -> Ned {
         let reported = self.velocity_m_s();
@@ -181,7 +180,7 @@ impl NavEstimator {
         }
     }
 
-    /// The present navigation fault.
+    /// The current navigation fault.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
         let Some(fix) = &self.known.fix else {
             return Some(self.known.doubt.unwrap_or(NavFault::NoFix));
@@ -201,8 +200,8 @@ impl NavEstimator {
             .map_or(0.0, |since| (now - since).as_s());
         self.known
             .doubt
-            // In this order, because an operator sees one cause: first the receiver's own report,
-            // then old data, then contradictions.
+            // In this order, because operators see one cause: first the receiver's own report, then
+            // old data, then contradictions.
             .or(jump.map(|(_, by_m)| NavFault::Jump(by_m)))
             .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
             .or((heading_age_s > self.watch.age_max_s)
@@ -219,8 +218,8 @@ impl NavEstimator {
 
     fn take_fix(&mut self, now: SimTime, fix: &protocol::Fix) -> bool {
         let doubt = self.doubt_of(fix);
-        // A boat may send the same fix twice, in two sentences. Evidence against it may be in the
-        // second one alone.
+        // A boat may send the same fix twice, in two sentences. Evidence against it may be in only
+        // the second.
         if self.is_repeated(fix.time, fix.at) {
             self.known.doubt = doubt.or(self.known.doubt);
             return false;
@@ -229,10 +228,10 @@ impl NavEstimator {
         self.take_position(now, fix.at, doubt)
     }
 
-    /// The receiver's evidence against its fix.
+    /// Evidence of the receiver against its own fix.
     fn doubt_of(&mut self, fix: &protocol::Fix) -> Option<NavFault> {
-        // RMC reports neither quality nor dilution, so those of the GGA before it also apply to it.
-        // Otherwise each RMC would clear a fault of the position. Either sentence alone can report
+        // RMC reports neither quality nor dilution, so those of the preceding GGA also apply to it;
+        // otherwise each RMC would clear a fault of the position. Either sentence alone can report
         // that there is no fix.
         let told = self
             .known
@@ -255,8 +254,8 @@ impl NavEstimator {
         }
     }
 
-    /// A repeated fix is not new. Receivers that stamp whole seconds may send several in one
-    /// second.
+    /// Whether a fix repeats the last one. Receivers that stamp whole seconds may send several new
+    /// fixes in one second.
     fn is_repeated(&self, time: Option<TimeOfDay>, at: Option<LatLon>) -> bool {
         let same_place = self.known.fix.map(|fix| fix.raw) == at || self.known.fix.is_none();
         time.is_some() && time == self.known.time_of_fix && same_place
@@ -279,11 +278,11 @@ impl NavEstimator {
         if let Some(before) = self.known.fix {
             let since_s = (now - before.at).as_s();
             let moved = place - before.place;
-            // The fix itself is used from here on: the new place may be the right one. The
-            // fault lasts until positions have agreed for two seconds.
+            // The fix itself is used from now on, because the new position may be right. The fault
+            // lasts until positions have agreed for two seconds.
             if moved.length() > self.speed_max_m_s * since_s + self.watch.jump_m {
                 self.known.jumped = Some((now, moved.length()));
-                // An earlier velocity belongs to another position.
+                // The earlier velocity belongs to the old position.
                 self.known.velocity = None;
                 self.known.motion.jump();
                 self.known.compass.interrupt();
@@ -295,7 +294,7 @@ impl NavEstimator {
                 .known
                 .thrust_at
                 .is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
-            // The same to the last digit. Without thrust a boat may well lie still.
+            // The same in every digit. Without thrust a boat may well lie still.
             self.known.still_since =
                 (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
         }
@@ -331,7 +330,7 @@ impl NavEstimator {
         }
         let psi_rad = match heading.north {
             North::True => rad_from_compass_deg(heading.deg),
-            // A Surveyor's headings are magnetic, its receiver's courses true.
+            // A Surveyor's headings are magnetic; its receiver's courses are true.
             North::Compass => wrap_pi(rad_from_compass_deg(heading.deg) + self.compass_to_true_rad),
         };
         self.known.motion.take_heading(psi_rad);

@@ -1,4 +1,4 @@
-//! The recording of a gateway: every byte both ways, all other inputs of its core, and events.
+//! The recording of a gateway: all bytes both ways, all other inputs of its core, and events.
 //!
 //! The crate [`recording`] lists the topics. A step of the core is an input followed by its
 //! results.
@@ -10,7 +10,7 @@ use primitives::{SimTime, VehicleId, codec};
 use recording::{Entry, Facts, Kind, Opening};
 use serde::{Deserialize, Serialize};
 
-/// The JSON topics; the topic of bytes contains the boat's name.
+/// The JSON topics. The topic of bytes contains the boat's name.
 pub(crate) const INPUT: &str = "input";
 pub(crate) const EVENT: &str = "event";
 
@@ -19,20 +19,20 @@ pub(crate) fn link_topic(boat: &str) -> String {
     format!("link/{boat}")
 }
 
-/// An input other than bytes. JSON in a recording is an object.
+/// An input other than bytes; recordings store JSON as objects.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct RecordedInput {
     pub(crate) input: Input,
 }
 
-/// Something that happened.
+/// An event.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct RecordedEvent {
     pub(crate) event: Event,
 }
 
-/// The start of a recording by a gateway with this plan: at this UTC (ns), by a program of this
-/// commit.
+/// The opening of a recording by a gateway with this plan, started at this UTC time (ns) by a
+/// program built from this commit.
 pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
     let plan_json = serde_json::to_string(plan).expect("a plan is JSON");
     let facts = [
@@ -54,12 +54,12 @@ pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
 pub struct StepEncoder {
     link_topic: String,
     vehicle: VehicleId,
-    /// Pieces of bytes so far.
+    /// Number of pieces of bytes so far.
     pieces: u64,
 }
 
 impl StepEncoder {
-    /// For the boat with this name; its number comes from the game.
+    /// An encoder for the boat with this name; the boat's number comes from the game.
     pub fn new(boat: &str) -> StepEncoder {
         StepEncoder {
             link_topic: link_topic(boat),
@@ -73,8 +73,8 @@ impl StepEncoder {
         self.vehicle = vehicle;
     }
 
-    /// The entries for a step at `at` by the gateway's clock; `game_now` is the game time as last
-    /// received.
+    /// The entries for a step at the time `at` of the gateway's clock; `game_now` is the game time
+    /// as last received.
     pub fn step(
         &mut self,
         at: SimTime,
@@ -83,8 +83,8 @@ impl StepEncoder {
         out: &Output,
     ) -> Vec<Entry> {
         let mut entries = match input {
-            // As CDR on a separate topic, because link bytes make up nearly all of a recording;
-            // JSON would be several times as long.
+            // As CDR on a separate topic, because link bytes make up most of a recording; JSON
+            // would be several times as long.
             Input::Bytes(bytes) => vec![self.link_bytes(at, game_now, false, bytes)],
             other => vec![json(
                 INPUT,

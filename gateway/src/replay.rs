@@ -19,7 +19,7 @@ pub struct Replay {
     pub bytes_in: u64,
     /// Bytes to the boat.
     pub bytes_out: u64,
-    /// Time from the first input to the last.
+    /// Time between the first and last input.
     pub lasted: SimTime,
     /// The events of the replay.
     pub events: Vec<(SimTime, Event)>,
@@ -27,7 +27,7 @@ pub struct Replay {
     pub status: GatewayStatus,
     /// The first difference from the recording.
     pub difference: Option<Difference>,
-    /// Whether the file ends abruptly.
+    /// Whether the file is truncated.
     pub is_cut: bool,
 }
 
@@ -50,8 +50,8 @@ struct RecordedStep {
     events: Vec<Event>,
 }
 
-/// The plan of a recording. A setting that is newer than the recording has its value from the
-/// default file.
+/// The plan of a recording. Settings newer than the recording get their values from the default
+/// file.
 fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
     let mut plan: Value = serde_json::from_str(text)?;
     if let Some(gateway) = plan.get_mut("gateway") {
@@ -60,7 +60,7 @@ fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
     serde_json::from_value(plan)
 }
 
-/// Adds missing table entries.
+/// Adds missing entries of tables.
 fn complete(table: &mut Value, defaults: &Value) {
     let (Value::Object(table), Value::Object(defaults)) = (table, defaults) else {
         return;
@@ -100,7 +100,7 @@ pub fn replay(bag: &Bag) -> Result<Replay, RecordingError> {
             bytes_in += bytes.len() as u64;
         }
         bytes_out += out.bytes.len() as u64;
-        // Some outputs of the last step may be missing from a truncated file.
+        // A truncated file may lack some outputs of the last step.
         let is_whole = !is_cut || i + 1 < steps.len();
         if difference.is_none() && is_whole {
             difference = differing(step, &out);
@@ -131,7 +131,7 @@ fn differing(step: &RecordedStep, out: &Output) -> Option<Difference> {
             .trim_end()
             .to_owned()
     };
-    // Bytes to the boat first, then events: a difference in the events often follows from one
+    // Compare bytes to the boat first, then events: a difference in events often follows from one
     // in the bytes.
     let said = |events: &[Event]| format!("{events:?}");
     let pairs = [
@@ -174,7 +174,7 @@ fn add_step(
             message.read_json::<RecordedEvent>()?.event,
             steps.last_mut(),
         ) {
-            // Only outputs of the core are compared.
+            // Compare only outputs of the core.
             (Event::Remark(_), _) | (_, None) => {}
             (event, Some(step)) => step.events.push(event),
         },

@@ -1,8 +1,8 @@
-//! The set-point mapper: converts an order to the set-point that the boat receives.
+//! The set-point mapper: converts orders to set-points for the boat.
 //!
-//! With `drive = "thrust"` the heading and speed loops run here; with `drive = "speed"` they run on
-//! the boat. Thrust is in per cent, its difference positive to starboard: port = thrust +
-//! difference, starboard = thrust − difference.
+//! With `drive = "thrust"` the heading and speed loops run in the gateway; with `drive = "speed"`
+//! they run on the boat. Thrust is in per cent, its difference positive to starboard: port = thrust
+//! + difference, starboard = thrust − difference.
 
 use crate::config::{Drive, Gateway, Limits, Loops};
 use crate::thrust_check::Ordered;
@@ -15,16 +15,16 @@ use primitives::math::interpolate;
 /// A set-point for the boat's controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SetPoint {
-    /// Thrust and thrust difference, per cent.
+    /// Thrust and thrust difference.
     Thrust {
-        /// Of both thrusters.
+        /// Thrust of both thrusters, per cent.
         thrust_pct: f64,
-        /// To starboard.
+        /// Difference, positive to starboard, per cent.
         difference_pct: f64,
     },
     /// Heading and speed, for the boat's own loops.
     Speed {
-        /// Heading in the reference of the boat's compass, degrees.
+        /// Heading by the reference of the boat's compass, degrees.
         heading_deg: f64,
         /// Speed, m/s.
         speed_m_s: f64,
@@ -68,7 +68,7 @@ impl SetPointMapper {
         }
     }
 
-    /// Resets the loops: the boat was stopped.
+    /// Resets the loops, because the boat was stopped.
     pub fn reset(&mut self) {
         (self.integral_pct, self.last) = (0.0, None);
     }
@@ -82,8 +82,8 @@ impl SetPointMapper {
             }
             Order::Thrust { port, starboard } => {
                 self.integral_pct = 0.0;
-                // The manufacturer's definition: thrust is half the sum, and the difference half
-                // the difference.
+                // The manufacturer's definition: thrust is half the sum, and difference is half the
+                // difference.
                 (50.0 * (port + starboard), 50.0 * (port - starboard))
             }
             Order::Steer {
@@ -93,8 +93,8 @@ impl SetPointMapper {
                 let turn_rad = wrap_pi(heading_rad - nav.psi_rad);
                 return self.steered(now, (heading_rad, turn_rad, speed_m_s), nav);
             }
-            // A boat that steers by itself receives the heading, and may turn to either side for
-            // half a turn.
+            // A boat with its own heading loop receives the heading, and may turn to either side
+            // for half a turn.
             Order::Turn { by_rad, speed_m_s } => {
                 return self.steered(now, (nav.psi_rad + by_rad, by_rad, speed_m_s), nav);
             }
@@ -102,7 +102,8 @@ impl SetPointMapper {
         self.within_limits(now, thrust, difference)
     }
 
-    /// The set-point for a heading, which is this far clockwise from the boat's, and a speed.
+    /// The set-point for a speed and a heading, given as the clockwise turn from the boat's
+    /// heading.
     fn steered(
         &mut self,
         now: SimTime,
@@ -110,7 +111,7 @@ impl SetPointMapper {
         nav: &Nav,
     ) -> SetPoint {
         let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
-        // The boat's own loops are not published, so this is an option rather than the default.
+        // The boat's own loops are not published, so they are an option rather than the default.
         if self.drive == Drive::Speed {
             let heading_deg = self.compass_deg(heading_rad);
             return SetPoint::Speed {
@@ -122,7 +123,7 @@ impl SetPointMapper {
         self.within_limits(now, thrust, difference)
     }
 
-    /// The expected effect of an order's set-point. For a boat that steers by itself, turns are not
+    /// The expected effect of an order's set-point. Turns of a boat with its own loops are not
     /// predicted.
     pub fn ordered(&self, order: Order, set_point: SetPoint) -> Ordered {
         let heading_rad = if let Order::Steer { heading_rad, .. } = order {
@@ -180,9 +181,9 @@ impl SetPointMapper {
         let asked = thrust_for(&self.loops.thrust_map, speed_m_s)
             + speed_pct_per_m_s * error_m_s
             + self.integral_pct;
-        // Turning takes priority: a boat that cannot turn cannot keep clear.
+        // Turning takes priority: a boat that cannot turn cannot avoid others.
         let room = (100.0 - difference.abs()).min(self.limits.thrust_max_pct);
-        // Anti-windup: the integral only grows while the thrust is not at its limit, and not at
+        // Anti-windup: the integral grows only while the thrust is below its limit, and not at
         // rest.
         if asked.abs() < room && speed_m_s > 0.0 {
             self.integral_pct += speed_pct_per_m_s * error_m_s * step_s / speed_integral_s;
@@ -198,7 +199,7 @@ impl SetPointMapper {
             ..
         } = self.limits;
         let (_, thrust_before, difference_before) = self.last.unwrap_or((now, 0.0, 0.0));
-        // The first set-point may grow as in a tenth of a second.
+        // The first set-point may grow as much as in a tenth of a second.
         let growth = slew_pct_s
             * if self.last.is_some() {
                 self.step_s(now)
@@ -220,7 +221,7 @@ impl SetPointMapper {
     }
 }
 
-/// The thrust, per cent, for a speed, m/s: the inverse of the map.
+/// The thrust (per cent) for a speed (m/s): the inverse of the map.
 fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
     interpolate(
         map.iter().map(|(thrust, speed)| (*speed, *thrust)),
@@ -228,9 +229,9 @@ fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
     )
 }
 
-/// `to`, or as far towards it as `growth` allows; towards zero there is no limit.
+/// `to`, or the nearest value that `growth` allows; decreases towards zero are not limited.
 fn slewed(from: f64, to: f64, growth: f64) -> f64 {
-    // Growth is limited, decay is not: zero is always within reach, so a stop is never slewed.
+    // Growth is limited, decay is not: zero is always allowed, so a stop is never slewed.
     let least = from.min(0.0) - growth;
     let most = from.max(0.0) + growth;
     to.clamp(least, most)
@@ -407,7 +408,7 @@ mod tests {
         else {
             panic!("speed")
         };
-        // Magnetic north is west of true: the compass shows more.
+        // Magnetic north is west of true north, so the compass shows more.
         assert!((heading_deg - 102.5).abs() < 1e-9, "{heading_deg}");
         assert_eq!(speed_m_s, 3.0);
     }

@@ -8,7 +8,7 @@ use thiserror::Error;
 /// The expected effect of a set-point on a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ordered {
-    /// The expected speed ahead, m/s.
+    /// The expected forward speed, m/s.
     pub ahead_m_s: f64,
     /// Thrust difference, per cent, positive to starboard; 0 if the boat steers by itself.
     pub turn_pct: f64,
@@ -19,66 +19,66 @@ pub struct Ordered {
 /// An order that a boat does not follow.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ThrustFault {
-    /// Its heading does not respond to the thrust difference: its rate of turn in degrees/s at half
-    /// of the full difference.
+    /// The boat's heading does not respond to the thrust difference: rate of turn in degrees/s at
+    /// half of the full difference.
     #[error(
         "the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half difference"
     )]
     NoTurn(f64),
-    /// Its speed ahead, m/s, after 40 s under thrust, is too low.
+    /// The forward speed (m/s) after 40 s under thrust is too low.
     #[error("the thrusters: it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
     NoWay(f64),
-    /// It goes astern instead of ahead, or does not take its heading: its course is off by this
-    /// much, degrees.
+    /// The boat goes astern instead of ahead, or does not take its heading: error of its course,
+    /// degrees.
     #[error("the boat moves against its orders: its course is off by {0:.0} degrees")]
     Against(f64),
 }
 
-/// A boat has to make way only when it is ordered to go at least this fast, m/s.
+/// Minimum ordered speed for which a boat must make way, m/s.
 const WAY_FROM_M_S: f64 = 1.2;
-/// The order must be in force for this time, s.
+/// Time for which the order must be in force, s.
 const WAY_S: f64 = 40.0;
-/// The boat must then reach at least this fraction of the ordered speed, unless a current is as
+/// Minimum fraction of the ordered speed that the boat must then reach, unless a current is as
 /// fast.
 const WAY_SHARE_MIN: f64 = 0.1;
-/// A boat can move against its orders only when it is ordered to go at least this fast, m/s.
+/// Minimum ordered speed for which a boat can move against its orders, m/s.
 const AGAINST_FROM_M_S: f64 = 0.8;
-/// The distance astern, m, that counts as a fault, and the speed that wind and current may add,
-/// m/s.
+/// Distance astern that counts as a fault (m), and the speed that wind and current may add (m/s).
 const ASTERN_M: f64 = 6.0;
 const ASTERN_DRIFT_M_S: f64 = 0.4;
-/// The error from a held heading, rad, that counts as a fault after this time, s, at this speed or
-/// more, m/s. Time in which it turns to that heading at least at this rate, rad/s, does not count;
-/// time in which the error exceeds this angle, rad, so that it moves away, counts twice.
+/// Error from a held heading (rad) that counts as a fault after this time (s) at this speed or more
+/// (m/s). Time in which the boat turns to that heading at least at this rate (rad/s) does not
+/// count; time in which the error exceeds this angle (rad), so that the boat moves away, counts
+/// twice.
 const ASTRAY_RAD: f64 = 0.45;
 const ASTRAY_S: f64 = 10.0;
 const ASTRAY_FROM_M_S: f64 = 0.5;
 const ASTRAY_TURN_RAD_S: f64 = 0.05;
 const ASTRAY_AWAY_RAD: f64 = 1.4;
-/// Both limits grow in waves, with the variance of the sway over about this time, s: m and s for
-/// each m²/s². A gale (0.1 to 0.3 m²/s²) holds a healthy boat for 40 s, or drives it 30 m away. In
-/// a simulated day (`tests/gale`) half of this is enough.
+/// Both limits grow in waves with the variance of the sway over about this time (s): by this many m
+/// and s for each m²/s². A gale (0.1 to 0.3 m²/s²) holds a healthy boat for 40 s, or drives it 30 m
+/// away. In a simulated day (`tests/gale`) half of this is enough.
 const SWAY_MEMORY_S: f64 = 10.0;
 const ASTERN_UNREST_M: f64 = 40.0;
 const ASTRAY_UNREST_S: f64 = 1500.0;
-/// Rates of turn are averaged over this time, s.
+/// Averaging time of rates of turn, s.
 const PIECE_S: f64 = 0.5;
-/// A boat reaches its rate of turn with about this lag, s.
+/// Approximate lag with which a boat reaches its rate of turn, s.
 const TURN_LAG_S: f64 = 0.7;
-/// The time over which rates and orders are compared, s, and the minimum number of rates.
+/// Time over which rates and orders are compared (s), and the minimum number of rates.
 const TURN_MEMORY_S: f64 = 60.0;
 const PIECES_MIN: f64 = 20.0;
-/// This many consecutive rates count as one: waves and gusts last.
+/// Number of consecutive rates that count as one, since waves and gusts last.
 const PIECES_ALIKE: f64 = 8.0;
 /// Minimum scatter of the rates, rad/s.
 const TURN_SCATTER_MIN_RAD_S: f64 = 0.03;
 /// Minimum rate of turn, rad/s, of a healthy boat with a thrust difference of 100 %.
 const TURN_MIN_RAD_S: f64 = 0.15;
-/// A rate that is lower by this many standard deviations is a fault. In a gale the wind may hold a
-/// healthy boat for longer than a minute, or turn it the other way: the check is whether a larger
-/// order makes it turn more.
+/// Number of standard deviations below the minimum that makes a rate a fault. In a gale the wind
+/// may hold a healthy boat for more than a minute, or turn it the other way: the check is whether a
+/// larger order makes it turn more.
 const SIGMAS: f64 = 5.0;
-/// Orders with a longer gap between them are not continuous, s.
+/// Maximum gap between continuous orders, s.
 const GAP_MAX_S: f64 = 1.5;
 
 /// A held speed, and the boat's motion in the meantime.
@@ -94,17 +94,17 @@ struct Way {
 /// The rate of turn against the thrust difference: a regression with exponential memory.
 #[derive(Clone, Copy, Debug, Default)]
 struct Turn {
-    /// The ordered difference, as a fraction of the full one, with the boat's lag.
+    /// The ordered difference, as a fraction of the full one, delayed by the boat's lag.
     difference: f64,
-    /// The current piece: its duration, s, and the turn in it, rad.
+    /// The current piece: its duration (s) and the turn in it (rad).
     piece_s: f64,
     turned_rad: f64,
-    /// Sums of 1, x, y, xx, xy and yy, where x is the difference and y the rate of turn, rad/s.
+    /// Sums of 1, x, y, xx, xy and yy, where x is the difference and y the rate of turn (rad/s).
     sums: [f64; 6],
 }
 
 impl Turn {
-    /// Adds a step of this length. Returns the rate of turn at full difference, rad/s, and its
+    /// Adds a step of this length. Returns the rate of turn at full difference (rad/s) and its
     /// standard deviation.
     fn observe(&mut self, difference: f64, step_s: f64, turned_rad: f64) -> Option<(f64, f64)> {
         self.difference += (difference - self.difference) * (step_s / TURN_LAG_S).min(1.0);
@@ -153,13 +153,13 @@ impl Sway {
 /// Recent orders, and the boat's response.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ThrustCheck {
-    /// When the last order was recorded, and the heading then, rad.
+    /// When the last order was recorded, and the heading then (rad).
     last: Option<(SimTime, f64)>,
     turn: Turn,
     way: Option<Way>,
     /// How far the boat has gone astern instead of ahead, m.
     astern_m: f64,
-    /// The ordered heading, rad, and for how long the boat has not taken it, s.
+    /// The ordered heading (rad), and how long the boat has not taken it (s).
     astray: Option<(f64, f64)>,
     sway: Sway,
     /// Its rate of turn, with the waves filtered out, rad/s.
@@ -168,8 +168,8 @@ pub(crate) struct ThrustCheck {
 }
 
 impl ThrustCheck {
-    /// Records the current command and the boat's motion: heading, rad, and speed ahead over the
-    /// ground, m/s.
+    /// Records the current command and the boat's motion: heading (rad) and forward speed over the
+    /// ground (m/s).
     pub(crate) fn observe(&mut self, now: SimTime, ordered: Ordered, nav: &Nav) {
         let Nav {
             psi_rad,
@@ -193,9 +193,9 @@ impl ThrustCheck {
             .turn
             .observe(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
         if let Some((slope, sigma)) = known
-            // No plain limit such as "full difference for 8 s and no turn": in a gale, a simulated
-            // Surveyor was held this way, or turned the other way, for 15 s 28 times in two hours
-            // of four boats.
+            // A plain limit such as "full difference for 8 s and no turn" does not work: in a gale,
+            // a simulated Surveyor was held this way, or turned the other way, for 15 s 28 times in
+            // two hours of four boats.
             && slope + SIGMAS * sigma < TURN_MIN_RAD_S
         {
             self.fault = Some(ThrustFault::NoTurn((0.5 * slope).to_degrees()));
@@ -218,8 +218,8 @@ impl ThrustCheck {
         let heading_rad = ordered
             .heading_rad
             .filter(|_| ordered.ahead_m_s >= AGAINST_FROM_M_S);
-        // Along the bow: a boat that turns around moves against its ordered heading, but never
-        // astern.
+        // Measure along the bow: a boat that turns around moves against its ordered heading, but
+        // never astern.
         let astern_m = self.astern_m - (surge_m_s + ASTERN_DRIFT_M_S) * step_s;
         self.astern_m = if ordered.ahead_m_s < AGAINST_FROM_M_S {
             0.0
@@ -234,7 +234,7 @@ impl ThrustCheck {
         let growth = match math::length(surge_m_s, sway_m_s) {
             speed_m_s if off_rad.abs() < ASTRAY_RAD || speed_m_s < ASTRAY_FROM_M_S => -2.0,
             _ if self.turn_rad_s * off_rad.signum() > ASTRAY_TURN_RAD_S => 0.0,
-            // It moves away from its destination with every second.
+            // The boat moves away from its destination with every second.
             _ if off_rad.abs() > ASTRAY_AWAY_RAD => 2.0,
             _ => 1.0,
         };
@@ -276,7 +276,7 @@ impl ThrustCheck {
         }
     }
 
-    /// The order that the boat does not follow, while it is driven.
+    /// The order that the boat fails to follow while driven.
     pub(crate) fn fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.fault.filter(|_| {
             self.last
@@ -297,7 +297,7 @@ mod tests {
         }
     }
 
-    /// When a fault occurs, s, and which one, for this order and this motion of the boat.
+    /// When and which fault occurs, s, for this order and this motion of the boat.
     fn first_fault(
         ordered: impl Fn(f64) -> Ordered,
         turn_deg_s: impl Fn(f64) -> f64,
@@ -328,7 +328,7 @@ mod tests {
         }
     }
 
-    /// To one side and the other, five seconds each.
+    /// To each side in turn, for five seconds.
     fn weaving(time_s: f64) -> Ordered {
         held(0.5, if time_s % 10.0 < 5.0 { 40.0 } else { -40.0 })(time_s)
     }
@@ -378,8 +378,8 @@ mod tests {
         );
     }
 
-    /// When a fault occurs, s, for a boat that is ordered to this heading at 2 m/s, with this
-    /// heading and speed, degrees and m/s ahead.
+    /// When a fault occurs (s) for a boat ordered to this heading at 2 m/s, with this heading
+    /// (degrees) and forward speed (m/s).
     fn against(heading_deg: f64, motion: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         let mut check = ThrustCheck::default();
         let heading_rad = Some(f64::to_radians(heading_deg));

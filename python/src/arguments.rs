@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// A mapping with these keys; the stub explains them.
+/// A mapping with these keys, which are explained in the stub.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Arguments {
@@ -79,12 +79,12 @@ impl Arguments {
     }
 }
 
-/// One of our errors as Python's `ValueError`, with its full text.
+/// Converts one of our errors to Python's `ValueError`, with its full message.
 pub(crate) fn refused(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A packed plan in Python; the stub explains it.
+/// A packed plan in Python, explained in the stub.
 pub(crate) type PackedParts = (String, Vec<(PathBuf, Vec<u8>)>, String);
 
 /// Converts a packed plan for Python.

@@ -1,5 +1,5 @@
-//! Parallel games for Python: steps without the interpreter's lock, into numpy arrays that stay the
-//! same.
+//! Parallel games for Python: steps without the interpreter's lock, into numpy arrays that are
+//! reused.
 
 use crate::arguments::{Arguments, refused};
 use crate::{scene, standing};
@@ -17,19 +17,19 @@ use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Parallel games; the stub explains them.
+/// Parallel games, explained in the stub.
 #[pyclass(module = "squall._native")]
 pub(crate) struct VectorEnvironment {
     games: Mutex<Games>,
     actions: Vec<Action>,
     arrays: Arrays,
-    /// None if no games are recorded.
+    /// `None` if no games are recorded.
     recordings: Option<Arc<RecordingLog>>,
     /// The process in which the threads run.
     process: u32,
 }
 
-/// An event: name, time in s, boat, other boat, and team (of the boat, or the winner).
+/// An event: name, time in s, boat, other boat, and team (the boat's, or the winner).
 type EventParts = (
     &'static str,
     f64,
@@ -88,7 +88,7 @@ impl Arrays {
         Ok(py.detach(|| work(rows)))
     }
 
-    /// Notes which games ended in the step, and the truth about all games.
+    /// Records which games ended in the step, and the truth about all games.
     fn end(&self, py: Python<'_>, games: &Games) -> PyResult<()> {
         self.write_states(py, games)?;
         let mut terminated = self.terminated.bind(py).try_readwrite()?;
@@ -416,7 +416,7 @@ impl VectorEnvironment {
         self.games.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Starts the threads again after a fork.
+    /// Restarts the threads after a fork.
     fn continue_after_fork(&mut self) -> PyResult<()> {
         if self.process == std::process::id() {
             return Ok(());
@@ -439,7 +439,7 @@ impl VectorEnvironment {
             return Ok(());
         };
         for problem in recordings.take_problems() {
-            // A file name contains no byte 0.
+            // A file name contains no NUL byte.
             let text = CString::new(problem).unwrap_or_default();
             PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)?;
         }

@@ -1,12 +1,13 @@
-//! A game seen from above, for pictures: the truth along and across the field.
+//! A game seen from above, for images: the truth along and across the field.
 
 use learn::environment::Games;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The scene of a game. Positions are metres along the field from the first team's end, and across
-/// it to that team's port. Angles are rad anticlockwise from along.
+/// The scene of a game. Positions are in metres along the field from the first team's end, and
+/// across it to that team's port side. Angles are in rad, anticlockwise from the direction along
+/// the field.
 pub(crate) fn dict<'py>(
     py: Python<'py>,
     games: &Games,

@@ -1,4 +1,4 @@
-//! Work done without the interpreter's lock, which Ctrl-C can end.
+//! Work done without the interpreter's lock, which Ctrl-C can interrupt.
 
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,8 +8,8 @@ use std::time::Duration;
 /// Interval at which Python checks for Ctrl-C.
 const EVERY: Duration = Duration::from_millis(100);
 
-/// Runs work on another thread, while this one lets Python handle signals. A handler that raises
-/// sets the flag, which ends the work.
+/// Runs work on another thread, while this one lets Python handle signals. A handler that raises an
+/// exception sets the flag, which ends the work.
 ///
 /// # Errors
 /// The exception that the signal handler raises, such as `KeyboardInterrupt`.
@@ -18,7 +18,7 @@ pub(crate) fn heeded<T: Send>(work: impl FnOnce(&AtomicBool) -> T + Send) -> PyR
     std::thread::scope(|scope| {
         let (sender, receiver) = channel();
         let stop = &stop;
-        // After a signal there is no receiver any more.
+        // After a signal the receiver no longer exists.
         scope.spawn(move || drop(sender.send(work(stop))));
         loop {
             match receiver.recv_timeout(EVERY) {

@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The games of a sweep; the stub explains it.
+/// The games of a sweep, explained in the stub.
 #[pyclass(frozen, module = "squall._native")]
 pub(crate) struct SweepPlan(Arc<Plan>);
 
@@ -122,7 +122,7 @@ fn played(
     })
 }
 
-/// The results of a sweep in a folder; the stub explains it.
+/// The results of a sweep in a folder, explained in the stub.
 #[pyclass(frozen, module = "squall._native")]
 pub(crate) struct SweepStudy {
     plan: Arc<Plan>,

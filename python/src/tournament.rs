@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The games of a tournament; the stub explains it.
+/// The games of a tournament, explained in the stub.
 #[pyclass(frozen, module = "squall._native")]
 pub(crate) struct TournamentPlan(Arc<Plan>);
 

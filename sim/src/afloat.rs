@@ -1,7 +1,7 @@
-//! A game without a referee, for `squall sim --afloat`: some of its boats afloat in its sea.
+//! A game without a referee, for `squall sim --afloat`: some of its boats float in its sea.
 //!
-//! Emulated boats float here while their game treats them as real. Sea, boats and sensors are those
-//! of the game. Tags, flags, limits on sharing and radio have no effect.
+//! Emulated boats float here while their game treats them as real. Sea, boats and sensors are as in
+//! the game. Tags, flags, radio and limits on sharing have no effect.
 
 use crate::spawn::{self, NoStart};
 use primitives::SimTime;
@@ -12,7 +12,7 @@ use thiserror::Error;
 /// The longest duration that a scenario file allows.
 const DAY_S: f64 = 86_400.0;
 
-/// Why the boats cannot be put in the water.
+/// A reason why the boats cannot be put in the water.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotAfloat {
     /// A boat is not in the game.
@@ -45,7 +45,7 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     // The game's own link already delays the agents' messages; they must not be delayed twice.
     water.link = None;
     water.rules = without_consequences(&scenario.rules);
-    // The values are already drawn, so it must not be built again from the files.
+    // The values have already been drawn, so the scenario must not be built again from the files.
     water.recipe = None;
     Ok(water)
 }

@@ -28,8 +28,8 @@ impl AutopilotModel {
     pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
         let inertia = hull.m_yaw;
         let omega = autopilot.heading_bandwidth_rad_s;
-        // Pole placement for a second-order system: the hull's own damping need not be repeated by
-        // the thrusters.
+        // Pole placement for a second-order system: the thrusters need not add the damping that the
+        // hull has itself.
         let wanted_damping = 2.0 * autopilot.heading_damping * omega * inertia;
         let surge_per_m_s = hull.m_surge / autopilot.speed_time_s;
         AutopilotModel {
@@ -63,7 +63,7 @@ impl AutopilotModel {
             + *integral_newton;
         let yaw = self.yaw_per_rad * turn_rad - self.yaw_per_rad_s * nu.yaw;
 
-        // Yaw first; surge gets the rest of the range.
+        // Yaw first; surge gets the remaining range.
         let reach = 0.5 * (thruster.newton_max - thruster.newton_min);
         let difference = (0.5 * yaw / thruster.arm_m).clamp(-reach, reach);
         let least = thruster.newton_min + difference.abs();

@@ -21,19 +21,19 @@ use rapier2d_f64::prelude::{
 };
 use rules::field::{Field, Obstacle, Walls};
 
-/// Maximum closing speed of two hulls, m/s. The distance closed in a tick is rapier's look-ahead
+/// Maximum closing speed of two hulls (m/s). The distance closed in a tick is rapier's look-ahead
 /// for contacts: hulls farther apart cannot touch before the next tick.
 const CLOSING_MAX_M_S: f64 = 8.0;
 /// Distance beyond rapier's look-ahead within which hulls are passed to rapier, m.
 const SPARE_M: f64 = 0.05;
-/// Thickness of a wall, and its extension beyond the corners, m.
+/// Thickness of a wall, and how far it extends beyond the corners, m.
 // Thick, so that no boat is pushed out on the far side within one tick.
 const WALL_M: f64 = 10.0;
 /// Restitution and friction between hulls: fendered fibreglass, wet.
 const RESTITUTION: f64 = 0.1;
 const FRICTION: f64 = 0.2;
 
-/// Rapier's group of the hulls; fixed shapes are in all groups.
+/// Rapier's group for hulls; fixed shapes are in all groups.
 const HULLS: Group = Group::GROUP_1;
 
 /// The solid shapes of a game.
@@ -47,7 +47,7 @@ pub struct ContactModel {
     hulls_are_solid: bool,
     dt_s: f64,
     look_ahead_m: f64,
-    /// Hulls closer than this are passed to rapier, m.
+    /// Distance below which hulls are passed to rapier, m.
     close_m: f64,
 }
 
@@ -97,11 +97,12 @@ pub struct Displacement {
 /// Role of a boat in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactRole {
-    /// It is pushed.
+    /// The boat is pushed.
     Dynamic,
-    /// It stays at rest whatever hits it.
+    /// The boat stays at rest, whatever hits it.
     Fixed,
-    /// It keeps its own motion whatever it hits: a real boat does not feel a simulated contact.
+    /// The boat keeps its own motion, whatever it hits: a real boat does not feel simulated
+    /// contact.
     Kinematic,
 }
 
@@ -122,8 +123,8 @@ struct Entry {
 }
 
 impl ContactModel {
-    /// The shapes of these kinds of boat (length and beam, m) on this field. Hulls that are not
-    /// solid pass through each other.
+    /// The shapes of these kinds of boat, given by length and beam (m), on this field. Hulls that
+    /// are not solid pass through each other.
     pub fn new(
         hulls: impl Iterator<Item = (f64, f64)>,
         field: &Field,
@@ -184,7 +185,7 @@ impl ContactModel {
             + self.close_m
     }
 
-    /// Resolves all contacts of a tick. `near` are the pairs that were within
+    /// Resolves all contacts of a tick. `near` lists the pairs that were within
     /// [`ContactModel::reach_m`] at its start.
     pub fn resolve(&self, models: &[HullModel], displacements: &mut [Displacement], near: &[Pair]) {
         let mut touches = self.touches(displacements, near);
@@ -192,7 +193,7 @@ impl ContactModel {
             return;
         }
         // In vehicle order, each boat once, with the direction of its nearest neighbour: other
-        // boats passed to rapier must not matter.
+        // boats passed to rapier must not affect the result.
         touches.sort_by(|a, b| {
             a.boat
                 .cmp(&b.boat)
@@ -223,7 +224,7 @@ impl ContactModel {
                 displacements[b].start(),
                 shape_b,
             ) {
-                // Only the axis counts, not its sign: the mass along a line is the same in both
+                // Only the axis matters, not its sign: the mass along a line is the same in both
                 // directions.
                 touches.push(Touch {
                     boat: a,
@@ -361,7 +362,7 @@ impl ContactModel {
             .pose(displacement.start())
             .linvel(velocity)
             .angvel(spin_rad_s)
-            // Rapier would put a body to sleep after some steps at rest; each world here exists for
+            // Rapier would put a body to sleep after some steps at rest; this world exists for only
             // one step.
             .can_sleep(false)
             .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.m_yaw));
@@ -457,7 +458,7 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     }
 }
 
-/// Reads a boat back from rapier's world. Without an active contact it keeps our motion.
+/// Reads a boat back from rapier's world. Without an active contact, the boat keeps our motion.
 ///
 /// Uses rapier's impulse rather than its change of velocity: a push on the bow quarter moves a hull
 /// with more mass across than along in a direction other than the push. Taking the change of

@@ -1,7 +1,7 @@
 //! Real boats in a game: their estimated position between reports.
 //!
-//! A real boat has no physics here. Its gateway reports position and motion; until the next report,
-//! the boat is extrapolated with that motion, tick by tick.
+//! A real boat has no simulated physics. Its gateway reports position and motion; until the next
+//! report, the boat is extrapolated with that motion, tick by tick.
 
 use crate::hull::Planar;
 use messages::picture::{Nav, OwnBoat};
@@ -13,14 +13,14 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// How long a boat is dead reckoned with constant motion after its last fix. After that it is
-/// assumed to stay where it is. The error grows with the square of the time: for a boat that slows
-/// down by 1 m/s² it is half a metre after one second and two metres after two. A boat that reports
-/// nothing probably slows down, because it receives nothing either, and its own watchdog stops its
-/// thrusters. And an extrapolated boat must not reach a flag.
+/// assumed to stay at its position. The error grows with the square of the time: for a boat that
+/// slows down by 1 m/s² it is half a metre after one second and two metres after two. A boat that
+/// reports nothing probably slows down: it receives nothing either, and its own watchdog stops its
+/// thrusters. Also, an extrapolated boat must not reach a flag.
 pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
 /// A boat whose last fix is older than this is lost. The margin over [`DEAD_RECKONING_MAX`] makes
-/// one fix per second with the usual delays sufficient. It is small, because the boat's mind no
-/// longer knows the position.
+/// one fix per second with the usual delays sufficient. The margin is small, because the boat's
+/// mind no longer knows the position.
 pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
 
 /// Maximum distance from the datum, m: the limit of scenario files.
@@ -30,7 +30,7 @@ const ABSURD_M_S: f64 = 30.0;
 /// Maximum yaw rate, rad/s: one turn per second.
 const ABSURD_RAD_S: f64 = std::f64::consts::TAU;
 
-/// Why a boat's report is rejected.
+/// A reason to reject a boat's report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadReport {
     /// The boat is simulated.
@@ -46,7 +46,7 @@ pub enum BadReport {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Track {
     fix: Option<Fix>,
-    /// Whether its last event reported it as lost.
+    /// Whether the last event reported the boat as lost.
     reported_lost: bool,
 }
 
@@ -61,12 +61,12 @@ impl Track {
         self.fix = Some(Fix { nav, at });
     }
 
-    /// Whether it was ever reported.
+    /// Whether the boat has ever reported.
     pub(crate) fn has_fix(&self) -> bool {
         self.fix.is_some()
     }
 
-    /// Whether its last fix is too old or missing.
+    /// Whether the last fix is too old or missing.
     pub(crate) fn is_lost(&self, now: SimTime) -> bool {
         self.fix.is_none_or(|fix| now > fix.at + NAV_TTL)
     }
@@ -80,8 +80,8 @@ impl Track {
             sway: nav.sway_m_s,
             yaw: nav.yaw_rate_rad_s,
         };
-        // A fix may be later than the world's tick; this extrapolates back a little. After a second
-        // the boat is assumed to rest where it is.
+        // A fix may be later than the world's tick; then this extrapolates back a little. After a
+        // second the boat is assumed to rest at its position.
         let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
         let pose = dead_reckoned(nav.pose(), nu, span.as_s());
         Some((
@@ -94,7 +94,7 @@ impl Track {
         ))
     }
 
-    /// An event when the boat is lost or back, once per change.
+    /// An event when the boat is lost or back, once for each change.
     pub(crate) fn event(&mut self, vehicle: VehicleId, now: SimTime) -> Option<Event> {
         let is_lost = self.is_lost(now);
         let was_lost = std::mem::replace(&mut self.reported_lost, is_lost);
@@ -118,8 +118,8 @@ impl Track {
 /// motion along an arc.
 pub(crate) fn dead_reckoned(from: Pose, nu: Planar, span_s: f64) -> Pose {
     let half_turn_rad = 0.5 * nu.yaw * span_s;
-    // The chord of the arc points half-way between both headings, and is shorter than the arc by a
-    // factor of sin(x) / x.
+    // The chord of the arc points half-way between the two headings, and is shorter than the arc by
+    // a factor of sin(x) / x.
     let chord = if half_turn_rad.abs() < 1e-4 {
         1.0 - half_turn_rad * half_turn_rad / 6.0
     } else {
@@ -132,13 +132,12 @@ pub(crate) fn dead_reckoned(from: Pose, nu: Planar, span_s: f64) -> Pose {
     }
 }
 
-/// The navigation with its heading within ±π, if all numbers are plausible.
+/// The navigation with its heading wrapped to ±π, if all numbers are plausible.
 pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
     // A NaN fails every comparison.
     let is_sound = nav.north_m.abs() <= ABSURD_M
         && nav.east_m.abs() <= ABSURD_M
-        // Before wrapping, the number of turns is limited: reducing a huge angle would lose all
-        // digits.
+        // Limit the number of turns before wrapping: reducing a huge angle would lose all digits.
         && nav.psi_rad.abs() <= 1e3
         && nav.speed_m_s() <= ABSURD_M_S
         && nav.yaw_rate_rad_s.abs() <= ABSURD_RAD_S;
@@ -177,7 +176,7 @@ mod tests {
             back.at.distance(from.at) < 1e-9 && (back.psi_rad - from.psi_rad).abs() < 1e-9,
             "{back:?}"
         );
-        // Many steps reach the same place as one, and backward steps return.
+        // Many steps reach the same place as one step, and backward steps return.
         for yaw in [0.4, 0.0, 1e-6, -3.0] {
             let nu = Planar { yaw, ..nu };
             let stepped = (0..20).fold(from, |pose, _| dead_reckoned(pose, nu, 0.05));

@@ -14,27 +14,27 @@ pub(crate) struct FlawModel {
     pub(crate) saturation: f64,
     /// Factors on thrust ahead and astern, for port and starboard.
     gain: [(f64, f64); 2],
-    /// Yaw moment at full thrust of both, N m clockwise.
+    /// Yaw moment with both thrusters at full thrust, N m clockwise.
     pub(crate) bias_newton_m: f64,
     latency_ticks: usize,
     pub(crate) battery: Option<BatteryModel>,
     pub(crate) ventilation: Option<Ventilation>,
 }
 
-/// The changing state of flawed thrusters without their shafts. The default is that of perfect
+/// The changing state of flawed thrusters, except their shafts. The default is that of perfect
 /// thrusters.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
-    /// Settings in transit to the thrusters, oldest first; one for each tick of latency.
+    /// Settings in transit to the thrusters, oldest first, one for each tick of latency.
     under_way: VecDeque<[f64; 2]>,
-    /// Charge of the thrusters' battery, 0 to 1; 0 without effect if they have none.
+    /// Charge of the thrusters' battery, 0 to 1; 0, without effect, if they have no battery.
     pub charge: f64,
 }
 
 impl FlawModel {
-    /// The model of `flaws` for ticks of `dt_s`; `None` if there are none.
+    /// The model of `flaws` for ticks of `dt_s`; `None` for perfect thrusters.
     pub(crate) fn new(flaws: &Flaws, dt_s: f64) -> Option<FlawModel> {
-        // The watchdog is not part of the thrusters: it acts where orders arrive.
+        // The watchdog is not part of the thrusters; it acts where orders arrive.
         if (Flaws {
             watchdog_s: None,
             ..flaws.clone()
@@ -94,19 +94,18 @@ impl FlawState {
             .for_each(|settings| settings[side] = setting);
     }
 
-    /// Sends `settings`. Returns those that arrive.
+    /// Sends `settings`; returns the settings that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {
-        // As long as the latency: with a push and a pop per tick, it never grows.
+        // As long as the latency: with one push and one pop per tick, it never grows.
         self.under_way.push_back(settings);
         self.under_way.pop_front().unwrap_or(settings)
     }
 }
 
 /// Thrust factor of a propeller with this much water above it: 1 from half the still-water depth
-/// on, decreasing linearly to 0 at the surface. The measured loss is a curve over depth and
-/// propeller radius (Minsaas, Faltinsen and Persson 1983), which is not published for so small a
-/// propeller.
+/// on, decreasing linearly to 0 at the surface. The measured loss depends on depth and propeller
+/// radius (Minsaas, Faltinsen and Persson 1983), but is not published for such small propellers.
 #[inline]
 pub fn wetness(ventilation: Ventilation, water_above_m: f64) -> f64 {
     (water_above_m / (0.5 * ventilation.depth_m)).clamp(0.0, 1.0)

@@ -10,8 +10,8 @@
 //!     | 0       m xg+A26  Iz+A66   |
 //! ```
 //!
-//! Added mass is part of `M`. As a force on the right-hand side, computed from the last
-//! acceleration, it would diverge once it reaches the mass, as it does in sway.
+//! Added mass is part of `M`. If it were a force on the right-hand side, computed from the last
+//! acceleration, the equation would diverge once added mass reaches the mass, as it does in sway.
 
 use primitives::frame::{Body, Ned, Rotation, ned_from_body};
 use scenario::boat::Hull;
@@ -78,7 +78,7 @@ pub struct HullModel {
 }
 
 impl HullModel {
-    /// The model of `hull` in water of this density.
+    /// The model of `hull` in water of the given density.
     pub fn new(hull: &Hull, water_density_kg_m3: f64) -> HullModel {
         let m_surge = hull.mass_kg + hull.added_surge_kg;
         let m_sway = hull.mass_kg + hull.added_sway_kg;
@@ -92,8 +92,8 @@ impl HullModel {
             m_sway,
             m_yaw,
             m_cross,
-            // The full Munk moment is that of a bare hull in ideal flow; with it, the Otter's model
-            // spins on its own from 1.2 m/s on. Scaling the moment alone would create energy. The
+            // The full Munk moment applies to a bare hull in ideal flow; with it, the Otter model
+            // spins by itself from 1.2 m/s on. Scaling the moment alone would create energy. The
             // factor therefore modifies A22 everywhere in the Coriolis terms, which stay
             // skew-symmetric.
             munk_sway: hull.added_surge_kg
@@ -120,7 +120,7 @@ impl HullModel {
         }
     }
 
-    /// The force (N, N, N m) for this acceleration of hull and added mass.
+    /// The force (N, N, N m) for an acceleration of hull and added mass.
     #[inline]
     pub fn force_of(&self, acceleration: Planar) -> Planar {
         Planar {

@@ -1,8 +1,8 @@
 //! The point boat of MOOS: a throttle, a rudder and two PID loops, without mass.
 //!
 //! The model is uSimMarine with pMarinePID (moos-ivp, `SimEngine::propagate…` and `PIDEngine`) as
-//! implemented in Pyquaticus. Its quirks are kept, because others train on it and their numbers
-//! must be reproduced here. For one step of `dt`:
+//! implemented in Pyquaticus. Its quirks are kept, because others train on it and we must reproduce
+//! their numbers. For one step of `dt`:
 //!
 //! ```text
 //! thrust  += PID_speed(v_wanted - v), or v_wanted * speed_factor;   below 0.01 it is 0
@@ -22,7 +22,7 @@ use primitives::{Ned, Rotation, math};
 use scenario::boat::{Kinematic, Pid};
 use serde::{Deserialize, Serialize};
 
-/// Thrust below this counts as 0, per cent.
+/// Thrust below which it counts as 0, per cent.
 const THRUST_MIN: f64 = 0.01;
 /// Maximum thrust and rudder in uSimMarine, whatever the limits of the loops, per cent.
 const FULL: f64 = 100.0;
@@ -91,8 +91,8 @@ impl KinematicState {
         }
     }
 
-    /// A boat in steady state with this heading, speed (m/s) and thrust (per cent), without
-    /// remaining errors of its loops.
+    /// A boat in steady state with this heading, speed (m/s) and thrust (per cent), whose loops
+    /// have no remaining errors.
     pub fn under_way(psi_rad: f64, speed_m_s: f64, thrust: f64) -> KinematicState {
         let settled = Loop {
             error: Some(0.0),
@@ -113,7 +113,7 @@ impl KinematicState {
     }
 
     /// Removes the velocity along the unit vector `out`, in both directions, and turns to the
-    /// remaining velocity. A head-on boat has none left; it turns to starboard.
+    /// remaining velocity. A head-on boat has no velocity left; it turns to starboard.
     pub fn slide_across(&mut self, out: Ned) {
         let along = Ned {
             north: -out.east,
@@ -175,7 +175,7 @@ impl KinematicModel {
         let heading_deg = wrap_180(state.heading_deg + turn_deg);
         let v_mean_m_s = 0.5 * (v_next_m_s + state.speed_m_s);
         let way = circular_mean(state.heading_deg, heading_deg).scaled(v_mean_m_s);
-        // Motion astern changes the position once and is then forgotten: the reference keeps no
+        // Motion astern changes the position once and is then discarded: the reference keeps no
         // negative speed.
         state.speed_m_s = v_mean_m_s.clamp(0.0, self.boat.speed_max_m_s);
         state.heading_deg = heading_deg;
@@ -206,7 +206,7 @@ impl KinematicModel {
             }
             Order::Hold => (0.0, 0.0),
         };
-        // pMarinePID has both: a map from speed to thrust, and a loop that changes the previous
+        // pMarinePID supports both a map from speed to thrust and a loop that changes the previous
         // thrust.
         let thrust = if boat.speed_factor > 0.0 {
             wanted_m_s * boat.speed_factor
@@ -274,7 +274,7 @@ fn wrap_180(angle_deg: f64) -> f64 {
 }
 
 /// The unit vector half-way between two headings.
-// Not half the sum, which would point north for headings on both sides of south.
+// Not at half the sum, which would point north for headings on both sides of south.
 fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
     let [a, b] = [a_deg, b_deg].map(|deg: f64| Rotation::from_heading(deg.to_radians()));
     Rotation::from_heading(math::atan2(a.sin + b.sin, a.cos + b.cos)).ahead()
@@ -284,7 +284,7 @@ fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
 mod tests {
     use super::*;
 
-    /// A boat with simple numbers: thrust in per cent equals speed in cm/s, without limits or
+    /// A boat with simple numbers: thrust in per cent equals speed in cm/s, with no limits or
     /// losses.
     fn plain() -> Kinematic {
         let none = Pid {

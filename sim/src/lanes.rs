@@ -7,15 +7,15 @@
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// The number of single-precision numbers in the widest registers: wave components side by side.
-// Crates such as `wide` choose the registers at compile time; plain arrays let the machine choose
+// Crates such as `wide` choose the registers at compile time; with plain arrays the choice is made
 // at run time.
 pub(crate) const LANES: usize = 16;
 
-/// Components of a row. Sums over components are kept by position in the row, so that they do not
-/// wait for each other.
+/// Components of a row. Sums over components are kept separately by position in the row, so that
+/// they do not wait for each other.
 pub(crate) const ROW: usize = 4;
 
-/// Rows side by side, or numbers for each component of a row.
+/// Rows side by side, or the number of values for each component of a row.
 pub(crate) const FOLD: usize = LANES / ROW;
 
 /// Numbers side by side. Sixteen lanes hold one number for each of sixteen components, or four
@@ -79,7 +79,7 @@ impl<const N: usize> Lanes<f64, N> {
         self
     }
 
-    /// These non-negative numbers with the signs of `signs`.
+    /// These non-negative numbers with the signs of `others`.
     #[inline(always)]
     pub(crate) fn with_signs_of(mut self, others: Lanes<f64, N>) -> Lanes<f64, N> {
         for i in 0..N {
@@ -89,8 +89,8 @@ impl<const N: usize> Lanes<f64, N> {
     }
 }
 
-/// Per lane, the number of `first` if that of `a` is at most that of `b`; otherwise the number of
-/// `second`.
+/// For each lane, the number in `first` if the one in `a` is at most the one in `b`, otherwise the
+/// number in `second`.
 #[inline(always)]
 pub(crate) fn where_at_most<const N: usize>(
     (a, b): (Lanes<f64, N>, Lanes<f64, N>),
@@ -116,7 +116,7 @@ impl Lanes<f32> {
         lanes
     }
 
-    /// The numbers of one row out of those of sixteen components, repeated four times.
+    /// The numbers of one row from those of sixteen components, repeated four times.
     #[inline(always)]
     pub(crate) fn row(&self, row: usize) -> Lanes<f32> {
         let mut repeated = Lanes::splat(0.0);
@@ -130,7 +130,7 @@ impl Lanes<f32> {
     #[inline(always)]
     pub(crate) fn sum(&self, number: usize) -> f64 {
         let at = |place: usize| f64::from(self.0[ROW * number + place]);
-        // This order on every machine: a sum of four parts, whatever the register width.
+        // The same order on every machine: a sum of four parts, whatever the register width.
         (at(0) + at(1)) + (at(2) + at(3))
     }
 }

@@ -27,30 +27,30 @@ pub(crate) struct Model {
     /// Hull models, by kind of boat.
     pub(crate) hulls: Vec<HullModel>,
     drives: Vec<Drive>,
-    /// By vehicle index: its kind.
+    /// Kind of each vehicle, by vehicle index.
     pub(crate) kinds: Vec<usize>,
-    /// By vehicle index: whether it is a real boat.
+    /// Whether each vehicle is a real boat, by vehicle index.
     external: Vec<bool>,
-    /// By vehicle index: index among the point boats, if it is one.
+    /// Index among the point boats, if it is one, by vehicle index.
     points: Vec<Option<usize>>,
-    /// The sensors of each vehicle that has any, with an index among those.
+    /// The sensors of each vehicle, if any, with its index among the vehicles with sensors.
     pub(crate) sensed: Vec<Option<(usize, SensorModel)>>,
     /// The hulls, by vehicle index.
     pub(crate) fleet: Fleet,
     pub(crate) sea: SeaModel,
     pub(crate) contact: ContactModel,
-    /// Distance within which pairs of boats are searched, m.
+    /// Distance within which to search for pairs of boats, m.
     pub(crate) pairs_within_m: f64,
-    /// By vehicle index: fault spans of the thrusters.
+    /// Fault spans of the thrusters, by vehicle index.
     thruster_faults: Vec<Vec<FaultSpan>>,
 }
 
 /// A thruster failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Failing {
-    /// It stops.
+    /// The thruster stops.
     Lost,
-    /// It keeps its last setting.
+    /// The thruster keeps its last setting.
     Stuck,
 }
 
@@ -100,8 +100,8 @@ impl Model {
             .iter()
             .map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
-        // Boats without sensors keep no readings, which would be useless in large fleets of perfect
-        // boats.
+        // Boats without sensors keep no readings, which would waste memory in large fleets of
+        // perfect boats.
         let is_sensed = plan
             .vehicles
             .iter()
@@ -192,7 +192,7 @@ impl Model {
         self.external[vehicle]
     }
 
-    /// The model of a point boat and its index among those.
+    /// The model of a point boat, and its index among the point boats.
     #[inline]
     pub(crate) fn point(&self, vehicle: usize) -> Option<(usize, &KinematicModel)> {
         match (self.points[vehicle], &self.drives[self.kinds[vehicle]]) {
@@ -221,8 +221,8 @@ impl Model {
         failing
     }
 
-    /// The forces on a boat in this tick, and the current around it. Thrusters follow the command
-    /// by the compass heading.
+    /// The forces on a boat in this tick, and the current around it. The thrusters follow the
+    /// command, using the compass heading.
     #[inline]
     pub(crate) fn forcing(
         &self,
@@ -249,8 +249,8 @@ impl Model {
             command,
         );
         for (side, shaft) in [&boat.port, &boat.starboard].into_iter().enumerate() {
-            // The front seat does not know the fault and steers as if both thrusters worked: that
-            // is the purpose of the fault.
+            // The front seat does not know of the fault and steers as if both thrusters worked:
+            // that is the purpose of the fault.
             let Some(failing) = failing[side] else {
                 continue;
             };
@@ -259,7 +259,7 @@ impl Model {
             } else {
                 shaft.command
             };
-            // Settings in transit are replaced as well.
+            // Also replace settings in transit.
             flaws.replace_under_way(side, settings[side]);
         }
         let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
@@ -295,7 +295,7 @@ impl Model {
         motion: &Motion,
         current_m_s: Ned,
     ) -> (Pose, Rotation, Planar) {
-        // Wrapped every tick: an angle that accumulated turns would lose digits in a long game.
+        // Wrap every tick: an angle that accumulated turns would lose digits in a long game.
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let rotation_half = rotation.turned(small_rotation(motion.turn_half_rad));
         let rotation_to = Rotation::from_heading(psi_rad);
@@ -407,7 +407,7 @@ fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
         .collect()
 }
 
-/// The settings for a command of the port and starboard thrusters.
+/// The settings of the port and starboard thrusters for a command.
 fn settings(
     boat: &mut BoatState,
     heading_error_rad: f64,
@@ -441,8 +441,8 @@ fn settings(
     }
 }
 
-/// The rotation by the small angle of half a tick. The series is exact to the last digits and takes
-/// a fraction of the time.
+/// The rotation by the small angle of half a tick. The series is exact to the last digits and much
+/// faster.
 #[inline]
 fn small_rotation(by_rad: f64) -> Rotation {
     let square = by_rad * by_rad;
@@ -460,7 +460,7 @@ fn small_rotation(by_rad: f64) -> Rotation {
 }
 
 /// `nu` plus `sign` times the current in body axes: −1 converts velocity over the ground to
-/// velocity through the water, 1 converts back.
+/// velocity through the water, 1 converts it back.
 #[inline]
 fn through_water(nu: Planar, rotation: Rotation, current_m_s: Ned, sign: f64) -> Planar {
     let current = frame::body_from_ned(rotation, current_m_s);

@@ -9,8 +9,8 @@ use crate::lanes::{Lanes, where_at_most};
 use primitives::instructions::{Instructions, Kernel};
 
 /// Number of boats in a full row, and in the last row.
-// The four stages of a boat form one chain of dependent operations; eight chains side by side take
-// less than half the time per tick.
+// The four stages of a boat form one chain of dependent operations; processing eight chains side by
+// side takes less than half the time per tick.
 const MANY: usize = 8;
 const FEW: usize = 4;
 
@@ -78,7 +78,7 @@ impl Fleet {
         }
     }
 
-    /// Uses these instructions. The choice affects only the speed.
+    /// Uses these instructions. The choice affects only speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
@@ -88,7 +88,8 @@ impl Fleet {
     ///
     /// The equation in `nu_r` does not depend on the heading, so no sine or cosine is needed.
     ///
-    /// `is_uniform` skips the water's own motion if it is the same everywhere, with equal results.
+    /// `is_uniform` skips the water's own motion if it is the same everywhere; the results are
+    /// equal.
     ///
     /// # Panics
     /// If the number of forcings differs from the number of boats.
@@ -127,7 +128,7 @@ impl Fleet {
         motions: &mut [Motion],
     ) {
         let forcings = Forcings::gather(forcings);
-        // Two compiled versions: a branch inside would keep the loop from using vector registers.
+        // Two compiled versions: a branch inside would keep the loop out of vector registers.
         let moved = if is_uniform {
             self.instructions.run(Advance::<N, true> {
                 row,
@@ -147,9 +148,9 @@ impl Fleet {
     }
 }
 
-/// Advances boats side by side. Packing and unpacking happen outside, because inside they would
-/// keep the numbers out of wide registers.
-// Sums are never fused multiply-adds: rustc does not contract, and we use no intrinsic for it.
+/// Advances boats side by side. Packing and unpacking happen outside: inside, they would keep the
+/// numbers out of wide registers.
+// Sums are never fused multiply-adds: rustc does not contract, and we use no such intrinsic.
 struct Advance<'a, const N: usize, const UNIFORM: bool> {
     row: &'a Row<N>,
     forcings: &'a Forcings<N>,
@@ -218,7 +219,7 @@ impl<const N: usize> Planars<N> {
 }
 
 impl<const N: usize> Forcings<N> {
-    /// Packs one to `N` boats; fills the remaining lanes.
+    /// Packs one to `N` boats and fills the remaining lanes.
     fn gather(forcings: &[Forcing]) -> Forcings<N> {
         // Unused lanes repeat the last boat, to avoid division by zero.
         let forcing = |i: usize| &forcings[i.min(forcings.len() - 1)];
@@ -267,7 +268,7 @@ struct Row<const N: usize> {
 }
 
 impl<const N: usize> Row<N> {
-    /// Packs one to `N` hulls; fills the remaining lanes.
+    /// Packs one to `N` hulls and fills the remaining lanes.
     fn new(hulls: &[&HullModel]) -> Row<N> {
         let each = |f: fn(&HullModel) -> f64| {
             Lanes(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])))
@@ -303,15 +304,15 @@ impl<const N: usize> Row<N> {
         water: Planars<N>,
     ) -> Planars<N> {
         // M nu_r' + C(nu_r) nu_r + D(nu_r) nu_r = tau (Fossen 2021, ch. 6), row by row. A current
-        // constant in time and space has no term relative to the water; it only changes the
+        // constant in time and space adds no term relative to the water; it only changes the
         // position.
         let Planars {
             surge: u,
             sway: v,
             yaw: r,
         } = nu_r;
-        // Waves move the water past the hull: their velocity is in the resistance here, their
-        // acceleration in `tau`. A force from the surface slope as well would count them twice.
+        // Waves move the water past the hull: their velocity is in this resistance, their
+        // acceleration in `tau`. An additional force from the surface slope would count them twice.
         let past = if UNIFORM {
             nu_r
         } else {

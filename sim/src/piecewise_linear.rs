@@ -7,7 +7,7 @@ const CELLS_MAX: usize = 256;
 #[derive(Clone, Debug)]
 pub(crate) struct PiecewiseLinear {
     pieces: Vec<Piece>,
-    /// For each of the equally wide cells, the piece at its start.
+    /// The piece at the start of each of the equally wide cells.
     index: Vec<u16>,
     per_x: f64,
     first: (f64, f64),
@@ -23,7 +23,7 @@ struct Piece {
 }
 
 impl PiecewiseLinear {
-    /// The interpolation through `points`, sorted strictly by their first numbers.
+    /// The interpolation through `points`, in strictly ascending order of their first numbers.
     ///
     /// # Panics
     /// If there are fewer than two points.

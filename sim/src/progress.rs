@@ -1,5 +1,5 @@
-//! Progress messages of a running game: shown on the terminal, and printed by a sim as one JSON
-//! line each for `squall run`. The last one is the report of the game.
+//! Progress messages of a running game: shown on the terminal, and printed by a sim as one line of
+//! JSON each for `squall run`. The last message is the report of the game.
 
 use crate::contest::Contest;
 use messages::refusal::Refusals;
@@ -45,7 +45,7 @@ pub struct Report {
     pub run: Run,
 }
 
-/// Results that depend on the machines and the network rather than on the game.
+/// Results that depend on the machines and the network, not on the game.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The pace of the game.
@@ -56,12 +56,12 @@ pub struct Run {
     pub refused: Refusals,
     /// Decisions that began late (real time only).
     pub overruns: u64,
-    /// Whether it was stopped early.
+    /// Whether the game was stopped early.
     pub cut_short: bool,
     /// Boats whose competition entry failed to decide.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub entry_faults: Vec<EntryFaults>,
-    /// The fault in the recording, if any.
+    /// The fault of the recording, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording_problem: Option<String>,
 }
@@ -73,7 +73,7 @@ pub struct EntryFaults {
     pub boat: String,
     /// The first fault.
     pub first: String,
-    /// Number of decisions.
+    /// The number of such decisions.
     pub count: u64,
 }
 
@@ -107,7 +107,7 @@ impl Reporter {
         tell: &mut dyn FnMut(ProgressMessage),
     ) {
         let scenario = contest.scenario();
-        // Events first: the line that reports a score appears before the score changes.
+        // Events first: the event of a score appears before the score changes.
         let news = self.reported.read(contest.events()).iter();
         news.for_each(|logged| tell(ProgressMessage::Event(EventOutcome::new(scenario, logged))));
         let teams = scenario.teams.iter().map(|team| team.name.clone());

@@ -1,8 +1,8 @@
-//! The radio link between minds ashore and their boats: delays and losses of reports and orders.
+//! The radio link between minds on shore and their boats: delays and losses of reports and orders.
 //!
 //! All random values derive from the seed, by vehicle, direction and decision. Losses are therefore
 //! the same in one process and over a network, whatever else is sent. Delays and losses of the real
-//! network are additional.
+//! network come on top.
 
 use crate::two_state::TwoStateChain;
 use messages::Order;
@@ -44,7 +44,7 @@ struct RadioModel {
 pub(crate) struct RadioState {
     /// The open decision.
     decision: u64,
-    /// Links, by vehicle index.
+    /// Links of the boats, by vehicle index.
     lines: Vec<Line>,
 }
 
@@ -74,8 +74,8 @@ enum Direction {
 }
 
 fn send<T>(under_way: &mut VecDeque<Sent<T>>, sent: Sent<T>, most: usize) {
-    // This message overtakes those that would arrive later, as with a sender that keeps only its
-    // newest message: an older one that arrives later would be worthless.
+    // This message overtakes messages that would arrive later, as with a sender that keeps only its
+    // newest message: an older message that arrives later is worthless.
     while under_way
         .pop_back_if(|earlier| earlier.arrival >= sent.arrival)
         .is_some()
@@ -103,7 +103,7 @@ fn receive<T>(
 }
 
 impl Radio {
-    /// The links of this scenario with its seed, if any.
+    /// The radio links of this scenario with its seed, if any.
     pub(crate) fn new(scenario: &Scenario) -> Option<Radio> {
         let link = scenario.link.clone()?;
         let seeds = scenario.seeds();
@@ -117,7 +117,7 @@ impl Radio {
 
     fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = TimedNoise>) -> Radio {
         let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
-        // Jitter is rarely that long, and late messages are overtaken.
+        // Jitter is rarely that long, and late messages are overtaken anyway.
         let usual = decisions(link.delay_s);
         let line = |_: &TimedNoise| Line {
             is_bad: false,
@@ -148,15 +148,15 @@ impl Radio {
         state.decision += 1;
         let now = model.decision * state.decision as i64;
         for (line, noise) in state.lines.iter_mut().zip(&model.noises) {
-            // The Gilbert-Elliott model: radio losses come in bursts, for which independent losses
-            // do not prepare agents.
+            // The Gilbert-Elliott model: radio losses come in bursts, for which agents tested with
+            // independent losses are unprepared.
             line.is_bad = model
                 .bursts
                 .next(line.is_bad, noise.at(now).unit(DRAWS * state.decision));
         }
     }
 
-    /// Sends an order to a boat at `at`. Of several orders in one decision, the last one counts.
+    /// Sends an order to a boat at `at`. Only the last of several orders in one decision counts.
     pub(crate) fn send_order(&mut self, vehicle: usize, order: Order, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::Out, order, at, now) {
             send(&mut self.state.lines[vehicle].orders, sent, self.model.most);
@@ -227,7 +227,7 @@ impl Radio {
         let is_out_of_range = link
             .range_m
             .is_some_and(|range_m| at.distance(link.station) > range_m);
-        // Looked up by vehicle and decision instead of drawn in sequence, so that other boats'
+        // Look it up by vehicle and decision instead of drawing in sequence, so that other boats'
         // messages shift no numbers.
         if is_out_of_range || noise.unit(draw) < share {
             return None;

@@ -1,4 +1,4 @@
-//! Records a running game from its first decision, on the network or in this process.
+//! Records a running game from its first decision, over the network or in this process.
 
 use crate::contest::Contest;
 use crate::progress::Report;
@@ -10,14 +10,14 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 enum Stage {
-    /// Before the first decision, when only the file exists.
+    /// The first decision has not been made; only the file exists.
     Waiting(NewFile),
     Recording(Recorder),
     /// The recording failed for this reason.
     Failed(String),
 }
 
-/// The recorder of a game, for which the game never waits.
+/// The recorder of a game. The game never waits for it.
 pub struct GameRecorder {
     path: PathBuf,
     game: String,
@@ -29,8 +29,8 @@ pub struct GameRecorder {
 }
 
 impl GameRecorder {
-    /// A recorder to a new file, for a networked game with this name and pace, played by a
-    /// program of this commit.
+    /// A recorder to a new file, for a networked game with this name and pace, played by a program
+    /// built from this commit.
     pub fn on_network(file: NewFile, game: &str, pace: &str, commit: &str) -> GameRecorder {
         let path = file.path().to_owned();
         let [game, pace, commit] = [game, pace, commit].map(str::to_owned);
@@ -61,15 +61,15 @@ impl GameRecorder {
         let Stage::Recording(recorder) = &self.stage else {
             return;
         };
-        // Over the network pictures are recorded as sent; in one process they are never encoded.
+        // Over the network, pictures are recorded as sent; in one process they are never encoded.
         let shows = !self.pictures_are_sent && inputs.contains(&Input::Pictured);
         let pictures = if shows {
             contest.last_pictures().to_vec()
         } else {
             vec![]
         };
-        // Passed on unencoded: another thread encodes and writes it, so that the disk never delays
-        // a game.
+        // Pass it on unencoded: a different thread encodes and writes it, so that the disk never
+        // delays a game.
         recorder.record(Entry::Decision(Box::new(Decision {
             frame,
             pictures,
@@ -98,7 +98,7 @@ impl GameRecorder {
         }
     }
 
-    /// Completes the recording with its result. Returns the final state.
+    /// Completes the recording with the result of the game. Returns the final state.
     pub fn end(self, report: &Report) -> RecordingState {
         let state = self.state();
         let run = serde_json::to_value(&report.run).expect("a run is JSON");

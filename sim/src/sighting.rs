@@ -1,9 +1,9 @@
-//! A team's sightings of other boats, by its own boats within range and view, delayed and noisy.
+//! A team's delayed and noisy sightings of other boats by its own boats, within range and view.
 //!
-//! Only for games whose rules limit sharing; otherwise everything is shown at once. A boat reports
-//! its sightings, so that with a radio link they are late or lost with the report. The error of a
-//! sighting, and whether it is lost, is drawn once per decision for each team and sighted boat,
-//! whichever boat of the team sees it.
+//! Used only if the rules limit sharing; otherwise everything is shown at once. A boat reports its
+//! sightings, so over a radio link they are late or lost with the report. The error of a sighting,
+//! and whether it is lost, is drawn once per decision for each team and sighted boat, whichever
+//! boat of the team sees it.
 
 use messages::picture::Contact;
 use primitives::SimTime;
@@ -46,7 +46,7 @@ struct Truths {
 }
 
 impl Sightings {
-    /// The sightings for this scenario, if its rules limit sharing.
+    /// The sightings for this scenario, if the rules limit sharing.
     pub(crate) fn new(scenario: &Scenario) -> Option<Sightings> {
         let sharing = scenario.rules.sharing.clone();
         if sharing == Sharing::default() {
@@ -72,8 +72,8 @@ impl Sightings {
         })
     }
 
-    /// Records every boat's true state at a decision. Reports of decisions before `oldest` can no
-    /// longer arrive.
+    /// Records every boat's true state at a decision. Reports from before the decision `oldest` can
+    /// no longer arrive.
     pub(crate) fn record_truth(
         &mut self,
         decision: u64,
@@ -84,7 +84,7 @@ impl Sightings {
         while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
         }
-        // Reused, so that a tick allocates nothing.
+        // Reuse it, so that a tick allocates nothing.
         let mut now = self.spare.pop().unwrap_or_default();
         now.clear();
         now.extend(boats);
@@ -114,7 +114,7 @@ impl Sightings {
         let own = &boats[seer];
         let teams = known.len() as u64;
         let known = &mut known[own.team.index()];
-        // By team, not by seer: two boats that see the same one do not average out its noise.
+        // By team, not by seer, so that two sightings of a boat do not average out the noise.
         let draw = 4 * (decision * teams + own.team.index() as u64);
         for (seen, known) in boats
             .iter()

@@ -1,4 +1,4 @@
-//! Starting positions: given by the scenario, or drawn from the game's `spawn` stream.
+//! Starting positions: given in the scenario, or drawn from the game's `spawn` stream.
 
 use primitives::angle::wrap_pi;
 use primitives::frame::{Ned, Pose};
@@ -20,13 +20,13 @@ pub struct SpawnError {
     pub vehicle: String,
 }
 
-/// Why a game cannot start.
+/// A reason why a game cannot start.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoStart {
     /// The boats do not fit into their spawn area.
     #[error(transparent)]
     SpawnError(#[from] SpawnError),
-    /// The values drawn for this seed are each allowed, but inconsistent.
+    /// Each value drawn for this seed is allowed, but together they are inconsistent.
     #[error("the randomised values for this seed are inconsistent\n{0}")]
     Draw(#[from] Problems),
     /// The game has real boats but runs without a clock.
@@ -42,8 +42,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        // Boats with given positions come first: drawn positions must keep clear of them, wherever
-        // they are in the file.
+        // Boats with given positions come first: drawn positions must avoid them, whatever their
+        // order in the file.
         if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }
@@ -66,8 +66,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
                 let from_port_m = stream.between(across_m.0, across_m.1);
                 scenario.field.seen_from(vehicle.team, along_m, from_port_m)
             };
-            // Drawn by rejection, not placed on a grid: every free place is equally likely, and a
-            // full field is an error.
+            // Rejection sampling, not a grid: every free place is equally likely, and a full field
+            // is an error.
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
             let at = at.ok_or_else(|| SpawnError {
                 vehicle: vehicle.name.clone(),

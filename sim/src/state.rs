@@ -42,6 +42,6 @@ pub struct BoatState {
     pub starboard: Shaft,
     /// State of the front seat's speed loop, N.
     pub speed_integral_newton: f64,
-    /// Whether its state became non-finite; the boat then stays at rest and out of play.
+    /// Whether the boat's state became non-finite; the boat then stays at rest and out of play.
     pub quarantined: bool,
 }

@@ -24,9 +24,9 @@ pub struct ThrusterModel {
     pub newton_min: f64,
     /// Maximum change of the commanded setting per tick.
     slew: f64,
-    /// Smaller commands have no effect.
+    /// Commands below this have no effect.
     deadband: f64,
-    /// Remaining fraction of a difference after half a tick and after a tick.
+    /// Remaining fraction of a difference after half a tick and after a full tick.
     lag: (f64, f64),
     /// Flaws of a pair of these thrusters.
     flaws: Option<Box<FlawModel>>,
@@ -48,9 +48,9 @@ enum Curve {
 pub struct Shaft {
     /// The command after the slew limit.
     pub command: f64,
-    /// The present setting.
+    /// The current setting.
     pub setting: f64,
-    /// The present thrust, N.
+    /// The current thrust, N.
     pub newton: f64,
 }
 
@@ -129,7 +129,7 @@ impl ThrusterModel {
         }
     }
 
-    /// The setting for this thrust within the thruster's limits, without flaws.
+    /// The setting for a thrust within the thruster's limits, without flaws.
     #[inline]
     pub fn setting(&self, newton: f64) -> f64 {
         let wanted = newton.clamp(self.newton_min, self.newton_max);
@@ -177,7 +177,7 @@ impl ThrusterModel {
         })
     }
 
-    // Separate from the common case, thrusters without flaws.
+    // Kept separate from the common case of thrusters without flaws.
     #[cold]
     #[inline(never)]
     fn drive_flawed(
@@ -304,7 +304,7 @@ mod tests {
         (0..4).for_each(|_| {
             model.respond(&mut shaft, 1.0);
         });
-        // One time constant: 1 − 1/e of the way.
+        // After one time constant: 1 − 1/e of the way.
         assert!(
             (shaft.setting - 0.632_120_558_828_557_7).abs() < 1e-12,
             "{}",
@@ -381,7 +381,7 @@ mod tests {
         assert_eq!(voyage(&table()), table_was);
     }
 
-    /// Forces after two minutes (both shafts have settled) at these fractions of full thrust.
+    /// Forces at these fractions of full thrust after two minutes, when both shafts have settled.
     fn settled(flaws: Flaws, shares: [f64; 2]) -> Planar {
         let (model, mut state, mut shafts) = flawed(flaws);
         let settings = shares.map(|share| model.setting_of_share(share));
@@ -556,7 +556,7 @@ mod tests {
         let mut state = model.start();
         let mut port = Shaft::default();
         let mut starboard = Shaft::default();
-        // One thruster full astern, one at half ahead, which is a third of full thrust.
+        // One thruster full astern, the other half ahead, which is a third of full thrust.
         let mut charge = 0.9;
         let (mut sag, mut last): (f64, Planar) = (1.0, Planar::default());
         for _ in 0..1_200 {

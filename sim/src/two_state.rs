@@ -21,10 +21,10 @@ impl TwoStateChain {
         turns_off: 1.0,
     };
 
-    /// A chain with these rates, 1/s, sampled every `period`.
+    /// A chain with the given rates (1/s), sampled every `period`.
     pub(crate) fn new(on_per_s: f64, off_per_s: f64, period: SimTime) -> TwoStateChain {
-        // In continuous time, so that a receiver's period changes only the sampling, not the
-        // failure rate.
+        // Computed in continuous time, so that a receiver's period affects only the sampling, not
+        // the failure rate.
         let either = -libm::expm1(-(on_per_s + off_per_s) * period.as_s()) / (on_per_s + off_per_s);
         TwoStateChain {
             turns_on: on_per_s * either,
@@ -32,7 +32,7 @@ impl TwoStateChain {
         }
     }
 
-    /// Whether it is on at the next sample, given a uniform number between 0 and 1.
+    /// Whether the chain is on at the next sample, given a uniform number between 0 and 1.
     pub(crate) fn next(self, on: bool, uniform: f64) -> bool {
         uniform
             < if on {

@@ -97,7 +97,7 @@ impl Scene<'_> {
     }
 
     /// Updates a team's picture in place. `own` is the known state of its boats, by vehicle index;
-    /// `events` are those since the previous picture.
+    /// `events` are the events since the previous picture.
     pub(crate) fn picture(
         &self,
         own: &[OwnBoat],
@@ -107,7 +107,7 @@ impl Scene<'_> {
     ) {
         let team = TeamId(picture.team);
         picture.stamp = self.stamp::<Picture>();
-        // Refilled instead of rebuilt, so that a decision of many teams allocates nothing.
+        // Refill instead of rebuilding, so that a decision with many teams allocates nothing.
         picture.own.clear();
         picture.contacts.clear();
         for (i, vehicle) in self.scenario.vehicles.iter().enumerate() {
@@ -139,8 +139,8 @@ impl Scene<'_> {
         let vehicle = VehicleId::at(i);
         let standing = &self.standing.vehicles[i];
         let (nav, fix_ns, imu) = match self.world.reading(vehicle) {
-            // Sensor readings, even for the boat's own team: agents never see the true state unless
-            // the boat's file omits sensors.
+            // Use sensor readings, even for the boat's own team: agents never see the true state
+            // unless the boat's file omits sensors.
             Some(reading) => (reading.nav, reading.fix_at, reading.imu),
             None => (
                 self.nav(i),
@@ -161,7 +161,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The true state of a boat as in a node report: perfect sharing, as ashore in Aquaticus.
+    /// The true state of a boat as in a node report: perfect sharing, as on shore in Aquaticus.
     pub(crate) fn contact(&self, i: usize) -> Contact {
         let state = self.world.state();
         let standing = &self.standing.vehicles[i];
@@ -185,7 +185,7 @@ impl Scene<'_> {
 /// Whether an event involves one of the team's boats or its flag, or ends the game.
 fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
     let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
-    // On real water, a team would not learn of events without its boats or its flag.
+    // On real water, a team would not learn of events that do not involve its boats or its flag.
     let is_own_flag = event
         .flag()
         .is_some_and(|flag| scenario.field.flags[flag.index()].team == team);

@@ -21,10 +21,10 @@ use scenario::sea::Sea;
 use scenario::{Boat, Scenario, Source};
 
 /// Maximum speed over the ground, m/s; a faster boat has an invalid state.
-// Far above any boat, and far below the overflow of squares.
+// Far above the speed of any boat, and far below the overflow of squares.
 const ABSURD_M_S: f64 = 1_000.0;
 
-/// Distance beyond the radius to which Pyquaticus sets boats back, m.
+/// How far beyond the radius Pyquaticus sets boats back, m.
 const POINT_BOAT_SPARE_M: f64 = 0.1;
 
 /// Boats in water.
@@ -35,7 +35,7 @@ pub struct World {
     work: Work,
 }
 
-/// What a world is created from.
+/// The data from which a world is created.
 #[derive(Clone, Debug)]
 pub struct WorldPlan<'a> {
     /// The length of a tick.
@@ -52,7 +52,7 @@ pub struct WorldPlan<'a> {
     pub sensor_period: SimTime,
     /// Whether boats collide with each other rather than only with walls and obstacles.
     pub boats_are_solid: bool,
-    /// [`World::pairs`] lists at least all pairs of boats closer than this, m.
+    /// Distance below which [`World::pairs`] lists all pairs of boats, possibly among others, m.
     pub pairs_within_m: f64,
     /// Seeds of the randomness of sea and sensors.
     pub seeds: Seeds,
@@ -63,13 +63,13 @@ pub struct WorldPlan<'a> {
 pub struct VehiclePlan<'a> {
     /// The name that selects its sensors' random numbers.
     pub name: &'a str,
-    /// Index of its kind.
+    /// Index of the vehicle's kind.
     pub kind: usize,
     /// Starting pose.
     pub start: Pose,
     /// Whether it is a real boat, which the simulation never moves.
     pub is_external: bool,
-    /// Its faults and their times.
+    /// The vehicle's faults and their times.
     pub faults: Vec<FaultSpan>,
 }
 
@@ -79,7 +79,7 @@ struct Work {
     near: Near,
     /// Rotations of the headings, by vehicle index.
     rotations: Vec<Rotation>,
-    /// Forces on each boat, and its motion under these alone.
+    /// Forces on each boat, and its motion under these forces alone.
     forcings: Vec<Forcing>,
     currents_m_s: Vec<Ned>,
     motions: Vec<Motion>,
@@ -114,7 +114,7 @@ impl World {
             work: Work::default(),
         };
         world.refresh();
-        // Minds decide before the first tick, from sensor readings at rest.
+        // Minds decide before the first tick, based on sensor readings at rest.
         world.read_sensors();
         world
     }
@@ -125,7 +125,8 @@ impl World {
     /// [`NoStart`] if the boats do not fit into their spawn area, or the randomised values are
     /// inconsistent.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
-        // The seed first: a file may draw values, and everything below depends on the drawn game.
+        // The seed first: a file may randomise values, and everything below depends on the drawn
+        // game.
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
         let seeds = scenario.seeds();
@@ -164,7 +165,7 @@ impl World {
     }
 
     /// Advances the world by one tick. `commands` are the boats' commands with valid numbers, by
-    /// vehicle index. Returns the boats whose state became non-finite; they stay at rest from now
+    /// vehicle index. Returns the boats whose state became non-finite; these stay at rest from now
     /// on.
     ///
     /// # Panics
@@ -176,12 +177,12 @@ impl World {
             "one command per vehicle"
         );
         self.work.quarantined.clear();
-        // Wind and current are processes in time: their values for this tick are computed once for
+        // Wind and current are processes in time, whose values for this tick are computed once for
         // all boats.
         self.model.sea.prepare(self.state.now);
         self.drive(commands);
-        // All boats move first without contact, and then those that touch are corrected, so that
-        // the order of the list gives no advantage.
+        // First all boats move without contact, then touching boats are corrected, so that their
+        // order in the list gives no advantage.
         self.model.contact.resolve(
             &self.model.hulls,
             &mut self.work.displacements,
@@ -229,7 +230,7 @@ impl World {
             };
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
-            // At the exact centre there is no direction for the set-back.
+            // At the exact centre there is no direction in which to set it back.
             if distance_m >= radius_m || distance_m == 0.0 {
                 continue;
             }
@@ -319,7 +320,7 @@ impl World {
         &self.work.pairs
     }
 
-    /// The present sea.
+    /// The current sea.
     pub fn sea(&self) -> SeaNow<'_> {
         self.model.sea.at_time(self.state.now)
     }
@@ -339,7 +340,7 @@ impl World {
             .truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
-    /// Passes boats within `close_m` of anything to rapier. Slower, with the same bytes.
+    /// Passes boats within `close_m` of any shape to rapier. Slower, with the same bytes.
     #[doc(hidden)]
     pub fn widen_contact(&mut self, close_m: f64) {
         self.model.contact.widen(close_m);
@@ -367,7 +368,7 @@ impl World {
         // One search for both, with the larger reach: with many boats the search dominates the
         // cost.
         let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
-        // At the end of a tick, for the next tick and for the referee: both need near pairs at the
+        // At the end of a tick, for the next tick and for the referee: both need close pairs at the
         // same positions.
         let boats = &self.state.boats;
         let pairs = self
@@ -445,7 +446,7 @@ impl World {
         }
     }
 
-    /// Applies the motion with its changes by contact. Contains non-finite states.
+    /// Applies the motion and its changes by contact. Contains non-finite states.
     fn settle(&mut self) {
         let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
@@ -461,7 +462,7 @@ impl World {
                     model.point(i),
                     displacement.velocity_change != Planar::default(),
                 ) {
-                    // Its own speed is through the water.
+                    // The boat's own speed is through the water.
                     let drift = frame::body_from_ned(
                         displacement.rotation_to,
                         sea.current_at(displacement.from.at),
@@ -469,7 +470,7 @@ impl World {
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
-                // At its last valid position, where others may hit it.
+                // It stays at its last valid position, where others may hit it.
                 *boat = BoatState {
                     pose: boat.pose,
                     quarantined: true,
@@ -482,7 +483,7 @@ impl World {
 }
 
 /// The point where a boat inside a circle entered it, by tracing back its straight path. For a boat
-/// that has not moved, straight outward.
+/// that has not moved, the point straight outward.
 fn way_back((from, to): (Ned, Ned), centre: Ned, radius_m: f64) -> Ned {
     let back = if from == to { to - centre } else { from - to };
     let back = back.scaled(1.0 / back.length());

@@ -1,4 +1,4 @@
-//! Compares two recorded games, as text.
+//! Compares two recorded games, in text form.
 
 use analysis::{Comparison, Pair, Response, SETTLED_S};
 use primitives::printable::add_line;
@@ -59,7 +59,7 @@ fn tracks(text: &mut String, width: usize, comparison: &Comparison) {
     *text += "Fréchet: discrete Fréchet distance (Eiter and Mannila 1994), which ignores delays\n";
 }
 
-/// A response number: its name, unit, decimal places, and accessor.
+/// A measure of a response: its name, unit, decimal places, and accessor.
 type Measure = (
     &'static str,
     &'static str,

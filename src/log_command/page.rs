@@ -1,4 +1,4 @@
-//! The summary of a recorded game as text.
+//! The summary of a recorded game in text form.
 
 use analysis::{BoatStatistics, Gateway, NavigationError, SteeringError, Summary, Topic, Traffic};
 use primitives::printable::add_line;

@@ -1,4 +1,4 @@
-//! How sensibly the boats in recorded games behaved.
+//! Judges how sensibly the boats behaved in recorded games.
 
 use crate::minds::Minds;
 use crate::progress::Progress;
@@ -11,7 +11,7 @@ use recording::FRAME;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Prints the figures for all games together, and writes them as JSON.
+/// Prints the figures for all games combined, and writes them as JSON.
 pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
     let mut sum = Quality::default();
     let mut progress = Progress::of(0, "decisions");

@@ -1,4 +1,4 @@
-//! What turned a recorded game, and what each boat added.
+//! The turning points of a recorded game, and each boat's contribution.
 
 use super::Args;
 use crate::progress::Progress;
@@ -11,9 +11,9 @@ use scenario::{Kind, load_file};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Futures of the curve for each game of a boat's comparison.
+/// Number of futures for the curve per game for the comparison of boats.
 const FUTURES_PER_GAME: usize = 20;
-/// The most values that the curve shows.
+/// Maximum number of values that the curve shows.
 const CURVE_COLUMNS: usize = 60;
 
 pub(super) fn print(args: &Args, file: &Path) -> Result<ExitCode> {

@@ -1,4 +1,4 @@
-//! `squall agent`: makes the decisions of boats in a game.
+//! `squall agent`: makes the decisions for boats in a game.
 
 use super::join_args::JoinArgs;
 use crate::screen;

@@ -29,14 +29,15 @@ pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
     Ok(command)
 }
 
-/// Checks the given token, if there is one.
+/// Checks the given token, if any.
 pub(crate) fn check_token() -> Result<()> {
     std::env::var(TOKEN_VARIABLE).map_or(Ok(()), |text| {
         text.parse::<Token>().map(drop).context(TOKEN_VARIABLE)
     })
 }
 
-/// The token of the games that this process's children serve and join: new, unless one is given.
+/// The token of the games that this process's children serve and join: a new one, unless one is
+/// given.
 pub(crate) fn token() -> &'static Token {
     static TOKEN: LazyLock<Token> = LazyLock::new(|| {
         let given = std::env::var(TOKEN_VARIABLE)
@@ -47,7 +48,7 @@ pub(crate) fn token() -> &'static Token {
     &TOKEN
 }
 
-/// Passes a command the keys for this role from a folder, if there is one. It then needs no token.
+/// Passes a command the keys for this role from a folder, if any. It then needs no token.
 pub(crate) fn give_keys(command: &mut Command, folder: Option<&Path>, identity: &Identity) {
     if let Some(folder) = folder {
         command
@@ -87,7 +88,8 @@ impl ChildProcess {
         })
     }
 
-    /// The lines of the child's piped output that `parse` accepts. Works once; ends with the child.
+    /// The lines of the child's piped output that `parse` accepts. Works only once; ends with the
+    /// child.
     pub(crate) fn lines<T: Send + 'static>(
         &mut self,
         parse: fn(&str) -> Option<T>,
@@ -110,7 +112,7 @@ impl ChildProcess {
         Ok(receiver)
     }
 
-    /// `None` while it is running; then its error, or `Some(None)` for success.
+    /// `None` while it is running; afterwards its error, or `Some(None)` for success.
     pub(crate) fn ended(&mut self) -> Option<Option<String>> {
         let status = self.child.try_wait().ok().flatten()?;
         Some((!status.success()).then(|| format!("{} failed: {status}", self.name)))
@@ -134,7 +136,7 @@ impl ChildProcess {
         self.stdin = None;
     }
 
-    /// Asks the child to stop and waits; returns an error text if it failed.
+    /// Asks the child to stop and waits; returns the error if it failed.
     pub(crate) fn stop(&mut self) -> Vec<String> {
         self.ask_to_stop();
         wait_for_all(std::slice::from_mut(self))
@@ -149,7 +151,7 @@ impl Drop for ChildProcess {
     }
 }
 
-/// Waits at most five seconds for all to end; returns the failures.
+/// Waits at most five seconds for all of them to end; returns the failures.
 pub(crate) fn wait_for_all(children: &mut [ChildProcess]) -> Vec<String> {
     const LIMIT: Duration = Duration::from_secs(5);
     let start = clock::now();

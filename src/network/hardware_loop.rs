@@ -1,5 +1,5 @@
-//! The hardware loop on one machine: separate water, and an emulated boat and a gateway for every
-//! real one.
+//! The hardware loop on one machine: a separate water simulation, and an emulated boat and a
+//! gateway for each real boat.
 
 use super::child_process::{self, ChildProcess, option};
 use super::hub_args::{free_port, unique_game_name};
@@ -30,16 +30,16 @@ pub(crate) struct LoopArgs {
     record_gateways: Option<PathBuf>,
 }
 
-/// Maximum number of emulated boats: each has two processes.
+/// Maximum number of emulated boats, each of which needs two processes.
 const BOATS_MAX: usize = 32;
-/// Timeout for an emulator to report its address.
+/// Maximum time for an emulator to report its address.
 const WINDOW: Duration = Duration::from_secs(20);
 /// The processes of the loop.
 pub(crate) struct HardwareLoop {
-    /// Gateways, then emulators: the order of shutdown.
+    /// Gateways, then emulators, in the order of shutdown.
     ends: Vec<ChildProcess>,
     water: ChildProcess,
-    /// The gateways write them; an empty one is removed.
+    /// Written by the gateways; an empty file is removed.
     _recordings: Vec<LentFile>,
 }
 
@@ -135,11 +135,12 @@ impl LoopArgs {
 }
 
 impl HardwareLoop {
-    /// Stops everything, gateways first, so that their boats are left at rest. Returns the
+    /// Stops all processes, gateways first, so that their boats are left at rest. Returns the
     /// failures.
     pub(crate) fn end(mut self) -> Vec<String> {
         let badly = self.ends.iter_mut().flat_map(ChildProcess::stop).collect();
-        // The water game never ends by itself; stopping it makes it report that it was cut short.
+        // The water simulation never ends by itself; stopping it makes it report that it was cut
+        // short.
         self.water.stop();
         badly
     }
@@ -154,7 +155,7 @@ fn start_emulator(
     let listen = "tcp://127.0.0.1:0";
     let mut command =
         child_process::squall(&["gateway", "emulate", "--game", water, "--connect", endpoint])?;
-    // The battery must outlast the game: only the game or the gateway may stop a boat here.
+    // The battery must outlast the game: only the game or the gateway may stop a boat.
     command.args([
         "--vehicle",
         name,

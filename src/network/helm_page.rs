@@ -1,10 +1,10 @@
-//! A helm report as text: in full or as one line.
+//! A helm report in text form: in full or on one line.
 
 use crate::helm_text::decision;
 use messages::helm::{FunctionReport, HelmReport, PolicyReport, RunState};
 use scenario::Scenario;
 
-/// Number of listed actions of a policy, most likely first.
+/// Number of actions listed per policy, most likely first.
 const ACTIONS: usize = 4;
 
 /// The full report: mode, decision, and the utilities of every behaviour.
@@ -109,7 +109,7 @@ pub(super) fn line(scenario: &Scenario, report: &HelmReport) -> String {
 }
 
 /// The table of behaviours: name, kind, run state, weight and utility; functions for contacts are
-/// listed below their behaviours.
+/// listed below their behaviour.
 fn rows(scenario: &Scenario, report: &HelmReport) -> Vec<[String; 5]> {
     let mut rows = vec![["behaviour", "kind", "state", "weight", "utility"].map(str::to_owned)];
     for behaviour in &report.behaviours {

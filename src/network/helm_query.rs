@@ -9,10 +9,10 @@ use primitives::VehicleId;
 use shore::page::is_sound;
 use std::time::Duration;
 
-/// A boat that sends nothing for this long has no agent.
+/// Silence after which a boat is assumed to have no agent.
 pub(crate) const SILENCE: Duration = Duration::from_secs(10);
 
-/// The helm report of a vehicle; `None` if it has no agent now.
+/// The helm report of a vehicle; `None` if it currently has no agent.
 pub(crate) fn report(
     observer: &Observer,
     vehicle: VehicleId,
@@ -46,7 +46,7 @@ pub(crate) fn report_of_agent(
         if let Some(report) = report(observer, vehicle, question)? {
             return Ok(report);
         }
-        // If no node serves this boat, report that before the reply times out.
+        // If no node serves this boat, report this before the reply times out.
         let is_answered_for = clock::since(asked) >= bus::ANSWER;
         if !is_answered_for || clock::since(start) >= SILENCE {
             bail!(

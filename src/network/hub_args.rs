@@ -88,7 +88,7 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
     GameName::new(&format!("{stem}-{bits:06x}")).map_err(|e| anyhow!(e))
 }
 
-/// This machine's address as others see it, if it has one. Sends nothing: the system only looks up
+/// This machine's address as seen by others, if it has one. Sends nothing: the system only looks up
 /// the route.
 pub(crate) fn own_address() -> Option<IpAddr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
@@ -98,8 +98,8 @@ pub(crate) fn own_address() -> Option<IpAddr> {
     (!address.is_loopback() && !address.is_unspecified()).then_some(address)
 }
 
-/// What users on other machines, or other users of this machine, need in order to join and control
-/// a game.
+/// The information that users on other machines, or other users of this machine, need to join and
+/// control a game.
 pub(crate) fn token_text(token: &Token) -> String {
     format!(
         "token for agents and operators on other machines or accounts: {TOKEN_VARIABLE}={}",

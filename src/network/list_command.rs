@@ -31,7 +31,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         };
         places.extend(bus::local_registry().into_iter().map(place));
     }
-    // Several games on this machine are not an error here: list them all.
+    // Several games on this machine are not an error: list them all.
     places.extend(
         args.leaf
             .net()

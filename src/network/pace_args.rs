@@ -1,5 +1,5 @@
-//! Command line arguments for the pace of a game and the nodes it waits for; shared by `run` and
-//! `sim`.
+//! Command line arguments for the pace of a game and the nodes that it waits for; shared by `run`
+//! and `sim`.
 
 use super::child_process::{self, option};
 use crate::game_args::GameArgs;

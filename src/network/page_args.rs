@@ -45,7 +45,7 @@ pub(crate) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Checks before a game begins that the page can be served.
+    /// Checks, before a game begins, that the page can be served.
     pub(crate) fn check(&self) -> Result<()> {
         let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
         Ok(Page::check(
@@ -74,7 +74,7 @@ impl PageArgs {
             self.listen,
             Page::open(self.settings(self.listen.unwrap_or(usual), stop)?),
         ) {
-            // Another page uses the port already.
+            // A different page already uses the port.
             (None, Err(PageError::Listen { .. })) => {
                 Page::open(self.settings(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), stop)?)
             }
@@ -93,7 +93,7 @@ impl PageArgs {
             || self.open
     }
 
-    /// Whether the user chose a page token, which then is part of the page's address.
+    /// Whether the user chose a page token, which is then part of the page's address.
     pub(crate) fn has_token(&self) -> bool {
         self.token().is_ok_and(|token| token.is_some())
     }
@@ -117,7 +117,7 @@ impl PageArgs {
 
     /// The page's address for a browser, with the token.
     pub(crate) fn url(&self, page: &Page) -> String {
-        // The token was already validated before the page was served.
+        // The token was validated before the page was served.
         address_of(page, self.token().unwrap_or_default().as_deref())
     }
 
@@ -129,7 +129,7 @@ impl PageArgs {
         }
     }
 
-    /// Serves a page with the content that `put` provides, from this path, until Ctrl-C.
+    /// Serves a page with the content from `put`, at this path, until Ctrl-C.
     pub(crate) fn show(
         &self,
         path: &Path,
@@ -155,7 +155,7 @@ impl PageArgs {
         }
     }
 
-    /// Passes these arguments to another process, and the token where no other user can read it.
+    /// Passes these arguments to a child process, with the token where no other user can read it.
     pub(crate) fn give_to(&self, command: &mut Command) {
         let listen = self
             .listen
@@ -193,7 +193,7 @@ fn address_of(page: &Page, token: Option<&str>) -> String {
     format!("http://{address}/{token}")
 }
 
-/// A text, escaped for a URL.
+/// A string, escaped for a URL.
 fn in_address(text: &str) -> String {
     const SPELLED: &AsciiSet = &NON_ALPHANUMERIC
         .remove(b'-')

@@ -1,4 +1,4 @@
-//! `squall replay` on a page: a recorded game, with helm reports from minds that are given its
+//! `squall replay` on a page: a recorded game, with helm reports from minds that receive its
 //! pictures again.
 
 use super::page_args::PageArgs;
@@ -43,7 +43,7 @@ pub(crate) fn show(file: &Path, page: &PageArgs) -> Result<ExitCode> {
     page.show(file, &stop::on_ctrl_c()?, |page| page.show(Arc::new(view)))
 }
 
-/// Opens a recording for a page, with a sentence about its origin if there is one.
+/// Opens a recording for a page, with a sentence about its origin, if any.
 pub(crate) fn open(file: &Path, about: Option<String>) -> Result<ReplayView> {
     let recording = Arc::new(replay_command::open(file)?);
     let mut recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());

@@ -1,5 +1,5 @@
 //! The helm reports of a replay: minds decide again, and their orders are compared with the
-//! recorded ones.
+//! recorded orders.
 
 use crate::minds::Minds;
 use messages::Order;
@@ -21,7 +21,7 @@ pub(super) struct ReplayHelms {
 
 impl ReplayHelms {
     pub(super) fn new(recording: Arc<Recording>) -> ReplayHelms {
-        // Inputs are recorded with the frame that they result in, one decision later.
+        // Inputs are recorded with the resulting frame, one decision later.
         let decision = |place| {
             Some((
                 recording
@@ -71,7 +71,7 @@ impl ReplayHelms {
 impl Helms for ReplayHelms {
     fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
         // Decide again: recording all objective functions would take megabytes per second, and
-        // strategies are deterministic. Comparison with the recorded order verifies this.
+        // strategies are deterministic. The comparison with the recorded order verifies this.
         let Some(order) = self.minds.decide(vehicle, decision, true) else {
             let reason = "no picture of this moment was recorded".to_owned();
             return HelmAnswer {

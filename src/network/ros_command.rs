@@ -1,4 +1,4 @@
-//! `squall ros`: a game as nodes of ROS 2, and the package of its messages.
+//! `squall ros`: a game as ROS 2 nodes, and the package with its messages.
 
 use crate::screen;
 use crate::stop;

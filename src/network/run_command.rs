@@ -69,7 +69,7 @@ pub(crate) fn demo(page: &PageArgs) -> Result<ExitCode> {
     })
 }
 
-/// The highest speed that a person can follow, simulated seconds per second.
+/// The maximum speed that a person can follow, simulated seconds per second.
 const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -129,7 +129,7 @@ impl Player for Processes<'_> {
         let game = unique_game_name(&scenario.name)?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (game.as_str(), endpoint.as_str());
-        // The sim writes it; this process removes it if it stays empty.
+        // The sim writes it; this process removes it if it remains empty.
         let file = file.map(NewFile::lend);
         let mut sim = start_sim((args, play), place, file.as_ref().map(LentFile::path))?;
         let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
@@ -160,7 +160,7 @@ impl Player for Processes<'_> {
                 screen::remark(&problem);
             }
         }
-        // Kills those that are still searching for the game, whose output would not end.
+        // Kill the agents that are still searching for the game, whose output would not end.
         drop(everybody);
         if let Some(report) = &mut report {
             report.run.entry_faults = faults.iter().flatten().collect();
@@ -233,20 +233,20 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-/// The line in which an agent reports the faults of a boat's competition entry.
+/// The line with which an agent reports faults of a boat's competition entry.
 fn faults_of(line: &str) -> Option<EntryFaults> {
     serde_json::from_str(line).ok()
 }
 
-/// The number of boats for one agent process: the requested number, or more if the processes for so
-/// many boats would overload the machine. The game is the same.
+/// The number of boats for one agent process: the requested number, or more if so many processes
+/// would overload the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))
 }
 
-/// Starts the agent processes. With keys, each one serves a single team; one serves all boats of a
-/// team with a competition entry, which is a program for the whole team.
+/// Starts the agent processes. With keys, each process serves a single team. A team with a
+/// competition entry, which is a program for the whole team, has one process.
 fn start_agents(
     args: &Args,
     scenario: &Scenario,
@@ -287,7 +287,7 @@ fn start_agents(
 }
 
 /// Shows the sim's progress until it reports the result or exits. If the requested page is missing,
-/// no game begins.
+/// no game starts.
 fn follow(
     messages: &Receiver<ProgressMessage>,
     (sim, mut page, token): (&mut ChildProcess, Option<&mut ChildProcess>, Option<&Token>),
@@ -318,7 +318,7 @@ fn follow(
         if stop.load(Ordering::Relaxed) {
             sim.ask_to_stop();
             asked += 1;
-            // After more than three seconds, at ten polls a second, it is killed.
+            // After more than three seconds, at ten polls a second, kill it.
             if asked > 30 {
                 return Ok(None);
             }

@@ -100,8 +100,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         speed: args.pace.speed,
         stop: stop.clone(),
     };
-    // Register before the sim answers: a node that finds the game also finds its token. If
-    // registration fails, users must pass the game's address; nothing else is lost.
+    // Register before the sim answers, so that a node that finds the game also finds its token. If
+    // registration fails, users must only pass the game's address.
     let registration = bus::register(&entry);
     if let Err(error) = &registration {
         screen::remark(&format!(

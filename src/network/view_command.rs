@@ -45,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let recordings = args.for_parent.then(|| stop::with_parent(&stop));
     let page = args.page.open(&stop)?;
-    // A parent process started the game itself, so it does not need these remarks.
+    // A parent process that started the game needs none of these remarks.
     let is_told = !args.for_parent;
     let tell = Box::new(move |problem: &str| {
         if is_told {

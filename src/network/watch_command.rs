@@ -35,7 +35,7 @@ pub(crate) struct Args {
     rate: u8,
 }
 
-/// After this long without a frame, ask whether the sim is still running.
+/// Time without a frame after which to check whether the sim is still running.
 const SILENCE: Duration = Duration::from_secs(3);
 /// Number of events kept on the screen.
 const EVENTS: usize = 6;
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Data received since the last picture.
+/// Data received since the screen was last updated.
 #[derive(Default)]
 struct Seen {
     frame: Option<Frame>,

@@ -10,7 +10,7 @@ const ANGLES_DEG: [f64; 12] = [
     1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0, 720.0, 1800.0,
 ];
 
-/// An axis with labels at multiples of 1, 2 or 5; for angles, at compass steps.
+/// An axis with labels at multiples of 1, 2 or 5, or for angles at compass steps.
 pub(crate) struct Axis {
     range: (f64, f64),
     labels: Vec<f64>,
@@ -19,7 +19,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// The axis with this name and unit over a non-empty range.
+    /// The axis with this name and unit, over a non-empty range.
     pub(crate) fn new(name: &str, range: (f64, f64)) -> Axis {
         let wide = range.1 - range.0;
         let is_enough = |step: &f64| wide / step <= LABELS;

@@ -36,7 +36,7 @@ pub(crate) struct Panel {
     pub(crate) equal: bool,
     /// The lines to draw.
     pub(crate) lines: Vec<Line>,
-    /// The text shown without lines.
+    /// The message shown if there are no lines.
     pub(crate) absent: &'static str,
     /// Named points in the panel.
     pub(crate) marks: Vec<Mark>,
@@ -47,7 +47,7 @@ impl Panel {
         self.lines.iter().zip(COLOURS.iter().copied().cycle())
     }
 
-    /// A panel with these lines, independent axes and no marks. Without lines it shows the text
+    /// A panel with these lines, independent axes and no marks. Without lines it shows the message
     /// `absent`.
     pub(crate) fn of(
         title: &'static str,
@@ -80,7 +80,7 @@ pub(crate) struct Line {
 
 /// A named dot.
 pub(crate) struct Mark {
-    /// The text beside the dot.
+    /// The name beside the dot.
     pub(crate) name: String,
     /// Horizontal and vertical value.
     pub(crate) at: (f64, f64),
@@ -109,7 +109,7 @@ const HEADER_ROW: i32 = 22;
 const KEY: i32 = 18;
 /// Opacity of filled areas.
 const FILLING: f64 = 0.25;
-/// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
+/// Colours that people with any kind of colour vision can distinguish (Okabe and Ito 2008).
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -207,7 +207,7 @@ fn draw_lines(area: &Area<'_>, panel: &Panel) -> Drawn {
         .iter()
         .filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite())
     {
-        // Put the name on the side with more room, and off the line between marks.
+        // Put the name on the side with more space, and away from the line between marks.
         let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) {
             (HPos::Right, -1)
         } else {
@@ -326,7 +326,7 @@ fn down_to_0(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// The runs of a line without gaps.
+/// The parts of a line between gaps.
 fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     points
         .split(|point| !(point.0.is_finite() && point.1.is_finite()))
@@ -334,8 +334,8 @@ fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
         .collect()
 }
 
-/// The range of a panel's points in one direction, with a margin and a minimum for its unit: a
-/// millimetre is not a navigation error.
+/// The range of a panel's points in one direction, with a margin and a minimum for its unit, since
+/// a millimetre is not a navigation error.
 fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
     let numbers = panel
         .lines
@@ -354,7 +354,7 @@ fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f
         .find(|(unit, _)| axis == *unit)
         .map_or(0.0, |(_, least)| *least);
     // A constant gets a margin of a tenth of its value on each side; a line that varies only by
-    // rounding is a constant.
+    // rounding counts as constant.
     let constant = 0.2
         * if low == 0.0 && high == 0.0 {
             1.0
@@ -383,10 +383,10 @@ fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
     (middle - 0.5 * width, middle + 0.5 * width)
 }
 
-/// Registers the font with which the plotting library measures texts.
+/// Registers the font with which the plotting library measures strings.
 fn provide_font() {
     let font = epaint_default_fonts::UBUNTU_LIGHT;
-    // Registration fails only for an invalid font; a plot would then report it.
+    // Registration fails only for an invalid font; then a plot would report it.
     drop(plotters::style::register_font(
         FONT,
         FontStyle::Normal,

@@ -8,7 +8,7 @@ use sim::sea::{Band, SeaModel, band, spectrum};
 use std::path::Path;
 use trial::Sample;
 
-/// Number of spectrum bands: showing the shape of a JONSWAP peak takes bands of 0.15 of the peak
+/// Number of spectrum bands: to show the shape of a JONSWAP peak, bands must be 0.15 of the peak
 /// frequency.
 const BANDS: usize = 30;
 /// Number of points of the nominal spectrum.
@@ -20,13 +20,13 @@ const ELEVATION_STEPS: u32 = 50;
 /// Duration and time step of the wind plot, s.
 const WIND_S: u32 = 600;
 const WIND_STEPS_PER_S: u32 = 2;
-/// Interval of marks on the track, s.
+/// Time between marks on the track, s.
 const MARK_S: f64 = 60.0;
-/// A boat that stays within this distance has not drifted, m.
+/// Distance within which a boat has not drifted, m.
 const STAYS_M: f64 = 0.01;
 
-/// Draws a sea to a file: the spectrum specified in its file, the realised sea, and the track of
-/// an unsteered boat from the datum.
+/// Draws a sea to a file: the spectrum specified in its file, the realised sea, and the track of an
+/// unsteered boat from the datum.
 pub(crate) fn write(
     path: &Path,
     title: String,

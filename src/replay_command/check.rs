@@ -14,7 +14,7 @@ use sim::Contest;
 #[derive(Debug)]
 pub(super) struct Verdict {
     pub(super) is_same: bool,
-    /// The result in one line.
+    /// The result, on one line.
     pub(super) text: String,
 }
 
@@ -155,7 +155,7 @@ mod tests {
     use rules::event::EventCursor;
     use std::io::Cursor;
 
-    /// The first second of a game with unrecorded pictures; `change` may omit decisions.
+    /// The first second of a game whose pictures are not recorded; `change` may omit decisions.
     fn recorded(change: impl Fn(Decision) -> Option<Decision>) -> Recording {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("scenarios/games/attack_1v1.toml");
@@ -199,7 +199,7 @@ mod tests {
         Recording::of(file).unwrap_or_else(|e| panic!("{e}"))
     }
 
-    /// The game with one more input at the end of its fifth decision.
+    /// The game with one additional input at the end of its fifth decision.
     fn with(input: Input) -> Recording {
         recorded(|mut decision| {
             if decision.frame.stamp.seq == 5 {

@@ -28,7 +28,7 @@ const EPISODES: &str =
 const SUMS: &str = "sums.csv";
 /// The wall-clock time spent by each update, over all parts of a resumed run.
 const TIMES: &str = "times.csv";
-/// What the page shows of a training run besides its tables.
+/// The data about a training run, besides its tables, that the page shows.
 const RUN: &str = "run.json";
 /// The subfolder of recordings.
 const GAMES: &str = "games";
@@ -50,7 +50,7 @@ pub(super) struct Files {
 struct Table {
     name: &'static str,
     bytes: usize,
-    // Updated with each line: rereading a table at every saved state would take longer and longer.
+    // Updated with each line: rereading a table at every saved state would take ever longer.
     sum: Xxh3,
 }
 
@@ -65,7 +65,7 @@ impl Table {
         table
     }
 
-    /// Accounts for text appended to the file.
+    /// Accounts for characters appended to the file.
     fn note(&mut self, text: &str) {
         self.bytes += text.len();
         self.sum.update(text.as_bytes());
@@ -77,7 +77,7 @@ impl Table {
 }
 
 impl Files {
-    /// Opens the folder of a training run; on resuming, drops everything written after the saved
+    /// Opens the folder of a training run; if resuming, drops everything written after the saved
     /// state.
     pub(super) fn open(folder: &Path, base: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
@@ -114,7 +114,7 @@ impl Files {
                     .ok()
                     .and_then(|bytes: usize| table.get(..bytes))
                     .map(str::to_owned);
-                // An earlier version wrote other columns.
+                // An earlier version wrote different columns.
                 *table = kept
                     .filter(|kept| kept.starts_with(head) && Table::of(name, kept).checksum() == sum)
                     .with_context(|| {
@@ -262,7 +262,7 @@ impl Files {
     }
 }
 
-/// Opens the table of times without what was written after the saved state; also returns the last
+/// Opens the table of times without the lines written after the saved state; also returns the last
 /// time.
 fn open_times(path: &Path, samples: u64) -> Result<(File, f64)> {
     let text = if samples > 0 && path.exists() {
@@ -280,7 +280,7 @@ fn open_times(path: &Path, samples: u64) -> Result<(File, f64)> {
     output_file::write(path, "the training", format!("samples,elapsed_s\n{kept}"))?;
     let file = File::options().append(true).open(path);
     let file = file.with_context(|| format!("cannot write to {}", path.display()))?;
-    // A page shows a run with a locked table as running. Some file systems do not support locks.
+    // A page shows a run as running if its table is locked. Some file systems do not support locks.
     drop(file.lock_shared());
     Ok((file, last.unwrap_or(0.0)))
 }
@@ -291,14 +291,14 @@ fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     written.with_context(|| format!("cannot write to {}", path.display()))
 }
 
-/// A path of this strategy that is valid in any folder; `None` if it is neither on the disk nor
-/// built in.
+/// A path of this strategy that is valid in any folder; `None` if it is neither on disk nor built
+/// in.
 fn base_for(strategy: &Path) -> Option<PathBuf> {
     let inside = || Some(tidied_path(strategy)).filter(|path| built_in(path).is_some());
     std::fs::canonicalize(strategy).ok().or_else(inside)
 }
 
-/// Reads a text file of the folder.
+/// Reads a text file from the folder.
 fn read(path: &Path) -> Result<String> {
     input_file::read_text(path, TABLE_BYTES_MAX)
         .with_context(|| format!("cannot read {}", path.display()))

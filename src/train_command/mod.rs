@@ -19,12 +19,12 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// Size limit of a state, bytes: networks of the largest size, and a league of them.
+/// Size limit of a state, bytes: networks of the maximum size, and a league of them.
 const STATE_BYTES_MAX: u64 = 4 << 30;
-/// Shortest time between two saved states. SIGTERM does not wait for the end of an update, and
-/// loses everything after the last saved state.
+/// Minimum time between two saved states. SIGTERM does not wait for the end of an update, and
+/// everything after the last saved state is lost.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
-/// Saving takes at most one part in this many of the time.
+/// Reciprocal of the maximum share of time for saving.
 const SAVE_SHARE: u32 = 20;
 
 #[derive(clap::Args)]
@@ -65,7 +65,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let writing = Arc::new(Mutex::new(()));
     let held = Arc::clone(&writing);
     stop::when_late(&stop, move || {
-        // Never while the files of an update are incomplete.
+        // Never exit while the files of an update are incomplete.
         let _complete = held.lock();
         screen::remark("stopped during an update; --resume continues from the last saved state");
         std::process::exit(130);
@@ -141,7 +141,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     finish(&trainer, &folder)
 }
 
-/// The strategy whose helm uses the policy in the last stage, or the one beside the training file.
+/// The strategy whose helm uses the policy in the last stage, or the one next to the training file.
 fn base(file: &Path, training: &Training) -> PathBuf {
     let helm = training
         .stage
@@ -199,7 +199,7 @@ fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc
     Ok(log)
 }
 
-/// An evaluation in one line.
+/// An evaluation, on one line.
 fn line(evaluated: &Evaluated, is_best: bool) -> String {
     let against = |(name, played): &(String, Played)| {
         let [won, drawn, lost] = played.results;

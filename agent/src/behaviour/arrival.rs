@@ -1,10 +1,10 @@
-//! When a point counts as reached.
+//! Decides when a point counts as reached.
 
 use primitives::Ned;
 use primitives::angle::wrap_pi;
 use std::f64::consts::TAU;
 
-/// A point recedes once it is this much farther away than at its closest, m; less may be noise.
+/// Increase over the closest distance at which a point recedes, m; a smaller one may be noise.
 const AWAY_M: f64 = 0.5;
 
 /// A point that the boat approaches. It is reached within the capture radius, or within the slip
@@ -17,8 +17,7 @@ pub(super) struct Arrival {
     /// The bearing of the point and its accumulated rotation, rad.
     bearing_rad: Option<f64>,
     turned_rad: f64,
-    /// Points within this distance count as reached, because the boat has circled a point at this
-    /// distance, m.
+    /// Distance at which the boat has circled a point, m: closer points count as reached.
     gone_round_m: f64,
 }
 
@@ -40,7 +39,7 @@ impl Arrival {
         }
     }
 
-    /// Whether the point is reached; `line` is its position relative to the boat.
+    /// Whether the boat reaches the point; `line` is the point's position relative to the boat.
     pub(super) fn reaches(&mut self, line: Ned, capture_radius_m: f64, slip_radius_m: f64) -> bool {
         let distance_m = line.length();
         let bearing_rad = Ned::default().bearing_rad(line);
@@ -92,8 +91,8 @@ mod tests {
 
     #[test]
     fn a_point_that_was_gone_round_is_reached_and_so_are_those_as_near_after_it() {
-        // A 5 m circle around the point at 10 degrees per decision, either way: never within the
-        // capture radius, never receding.
+        // A 5 m circle around the point at 10 degrees per decision, in either direction: never
+        // within the capture radius, never receding.
         for side in [1.0, -1.0] {
             let mut arrival = Arrival::new();
             let bearing_rad = |decision: u32| side * TAU * f64::from(decision) / 36.0;

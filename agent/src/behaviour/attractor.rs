@@ -1,4 +1,4 @@
-//! Attractor: draws the boat to a place, more strongly the nearer it is.
+//! Attractor: draws the boat to a place, more strongly the nearer the place is.
 
 use super::nearest::nearness;
 use super::steering::toward;
@@ -8,8 +8,8 @@ use scenario::strategy::Attractor;
 
 impl BehaviourLogic for Attractor {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        // If the place is unknown, such as that of a boat out of sight, this behaviour adds no
-        // function and the others decide.
+        // If the place is unknown, as for a boat out of sight, this behaviour adds no function and
+        // the others decide.
         let Some(point) = situation.locate(&self.to) else {
             return;
         };

@@ -8,10 +8,10 @@ use crate::ivp::Side;
 use crate::situation::{MovingPoint, Situation};
 use scenario::strategy::{AvoidCollision, Grade};
 
-/// Boats that would pass to starboard within this distance pass port to port instead, m, so that
-/// both choose the same side where either would do.
+/// Passing distance to starboard below which boats pass port to port instead, m, so that both
+/// choose the same side where either would do.
 const PORT_TO_PORT_M: f64 = 2.0;
-/// Below this relative speed no passing side is assigned, m/s.
+/// Relative speed below which no passing side is assigned, m/s.
 const PASSING_MIN_M_S: f64 = 0.3;
 
 impl BehaviourLogic for AvoidCollision {
@@ -29,7 +29,7 @@ impl BehaviourLogic for AvoidCollision {
         });
         // Both boats are assumed to keep turning. If each assumes that the other goes straight,
         // both can turn to the same side again and again until they touch. Hull contacts per
-        // boat-hour: 0.44 without this, 0.35 with it, 0.03 with an agreed side as well (random
+        // boat-hour: 0.44 without this, 0.35 with it, 0.03 also with an agreed side (random
         // strategies in calm water, `crates/arena/examples/safety.rs`).
         let own = situation.turning_on();
         for (distance_m, i) in nearest.iter() {
@@ -37,8 +37,8 @@ impl BehaviourLogic for AvoidCollision {
             let contact = other.turning_on();
             // The idea of reciprocal velocity obstacles (van den Berg, Lin and Manocha, ICRA 2008),
             // for boats that turn along arcs. Both give way: for the COLREGs roles of stand-on and
-            // give-way, each boat would need the other's present state, and observations may be
-            // old.
+            // give-way, each boat would need to know the other's current state, and observations
+            // may be old.
             let leave_to = side(own, contact);
             let function = keep_clear(situation, contact, 0.0, (min_m, max_m), horizon_s, leave_to);
             let share = graded(self.grade, nearness(distance_m, inner_m, outer_m));
@@ -47,7 +47,7 @@ impl BehaviourLogic for AvoidCollision {
     }
 }
 
-/// The side on which two approaching boats leave each other: the one on which they already pass.
+/// The side on which two approaching boats leave each other: the side on which they already pass.
 /// Both compute the same side, so neither turns into the other.
 fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
     let line = contact.at - own.at;

@@ -65,7 +65,7 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
                         velocity: Ned::default(),
                     };
                     // A circle is a stationary contact that touches at its radius, so the closed
-                    // form applies. A polygon has no closed form and needs a table.
+                    // form applies. Polygons have no closed form and need a table.
                     let function =
                         keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s, None);
                     output.add_share(share, None, &function);

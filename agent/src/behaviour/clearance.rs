@@ -1,7 +1,7 @@
 //! Clearance: how far the boat stays inside the edges of a region, for each course and speed.
 //!
 //! After a decision the boat keeps its motion for its reaction time, turns the shorter way at its
-//! turn rate, then goes straight.
+//! turn rate, then drives straight.
 
 use crate::ivp::{Courses, Grid, LANES, Lanes, Table, larger, smaller};
 use crate::own_motion::Handling;
@@ -10,23 +10,23 @@ use primitives::instructions::Kernel;
 use primitives::{Ned, math};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Largest single-precision error of a distance bound, m, with a margin.
+/// Maximum single-precision error of a distance bound, with a margin, m.
 const ROUNDING_M: f32 = 0.01;
 
-/// Lowers the utilities of a table to the clearance that each candidate keeps from the edges.
+/// Lowers the utilities of a table according to each candidate's clearance from the edges.
 ///
-/// A candidate is worth the fraction of `save_m` that it keeps: half for the least distance to an
-/// edge on the way, half for the distance at the end of the look-ahead. The worst edge counts. For
-/// the fraction `x` it gets `x + bend x (1 - x)` of each half.
+/// A candidate's value is the fraction of `save_m` that it keeps: half for the least distance to an
+/// edge on the way, half for the distance at the end of the look-ahead. The worst edge counts. The
+/// fraction `x` yields `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
-    /// For each edge: its outward unit normal, and the boat's distance inside it, m.
+    /// For each edge: its outward unit normal, and how far inside it the boat is, m.
     pub(super) edges: &'a [(Ned, f64)],
-    /// Edges beyond this distance are ignored, m.
+    /// Distance beyond which edges are ignored, m.
     pub(super) reach_m: f64,
     pub(super) heading_rad: f64,
-    /// Speed ahead through the water, as for candidates, m/s.
+    /// Forward speed through the water, as for candidates, m/s.
     pub(super) surge_m_s: f64,
     /// Velocity that wind and current add to the boat's, m/s.
     pub(super) drift: Ned,
@@ -85,8 +85,8 @@ impl Clearance<'_> {
     #[inline(always)]
     fn may_be_low(&self, courses: &Courses, turns: &Turns, edge: &Edge) -> bool {
         let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
-        // At the larger of the old speed and the top speed. Courses that lead away from an edge, or
-        // cannot reach it, are skipped 16 at a time: most are, even near an edge.
+        // Assumes the larger of the old speed and the top speed. Courses that lead away from an
+        // edge, or cannot reach it, are skipped 16 at a time: most of them, even near an edge.
         let out_s =
             (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
         let mut may_be_low = false;
@@ -94,7 +94,7 @@ impl Clearance<'_> {
             let cos_to =
                 courses.north.0[i] * edge.normal.north + courses.east.0[i] * edge.normal.east;
             let straight_s = turns.straight_s.0[i] * cos_to;
-            // The turn leads out by at most its length.
+            // The turn leads outward by at most its length.
             let most_s = turns.duration_s.0[i] + if straight_s > 0.0 { straight_s } else { 0.0 };
             may_be_low |= most_s > out_s;
         }
@@ -117,7 +117,7 @@ impl Clearance<'_> {
             }
             let way = ways.at(i);
             let speeds = self.grid.speeds_side_by_side();
-            // Lowered, not set: in a corner the boat is near two edges, and the worse one counts.
+            // Lower, do not set: in a corner the boat is near two edges, and the worse one counts.
             for (row, speed_m_s) in self.table.lowered_mut(first + i).iter_mut().zip(speeds) {
                 for i in 0..LANES {
                     row.0[i] = smaller(row.0[i], way.utility(old_m_s, speed_m_s.0[i], worth));
@@ -132,7 +132,7 @@ impl Clearance<'_> {
 struct Edge {
     /// Outward unit normal.
     normal: Ned,
-    /// The heading's angle to the normal, rad, and its sine.
+    /// The heading's angle to the normal and its sine, rad.
     from_rad: f64,
     sin_from: f64,
     /// Distance inside the edge at the start of the turn, m.
@@ -219,7 +219,7 @@ impl Turns {
     }
 }
 
-/// Minimum and maximum speed after this time, m/s, within the boat's acceleration.
+/// Minimum and maximum speed after this time, within the boat's acceleration, m/s.
 #[inline(always)]
 fn reached(old_m_s: f64, after_s: f64, handling: &Handling) -> (f32, f32) {
     let slowest_m_s = old_m_s - handling.deceleration_m_s2 * after_s;
@@ -241,7 +241,7 @@ struct Outward {
 }
 
 impl Outward {
-    /// From one angle to the edge's outward normal (and its sine) to another (and its sine).
+    /// From one angle to the edge's outward normal (with its sine) to another (with its sine).
     ///
     /// The outward distance is the integral of the cosine: the sine divided by the turn rate, with
     /// extremes at right angles to the normal.
@@ -309,7 +309,7 @@ impl Way {
         let end_m = farthest_m - self.drift_m + self.back_s * held(new_m_s, back)
             - self.straight_s * held(new_m_s, straight);
         let least_m = smaller(farthest_m, end_m);
-        // The nearest point and the end count half each: of two courses that come equally near, the
+        // The nearest point and the end each count half: of two courses that come equally near, the
         // one that then leads away is better, even for a boat that is already outside.
         kept(least_m * per_m, bend) + kept(end_m * per_m, bend)
     }
@@ -375,8 +375,8 @@ impl Ways {
         }
     }
 
-    /// A bit mask of the paths that may come within `save_m` of the edge at some speed; `most_m_s`
-    /// and the old speed are the largest.
+    /// A bit mask of the paths that may come within `save_m` of the edge at some speed; the larger
+    /// of `most_m_s` and the old speed is the maximum.
     #[inline(always)]
     fn low(&self, most_m_s: f32, save_m: f32) -> u32 {
         let begins_m = self.start_m - larger(self.drift_m, 0.0) - ROUNDING_M;
@@ -412,7 +412,7 @@ mod tests {
     /// A boat that makes every turn at the same yaw rate.
     const HANDLING: Handling = Handling::evenly(0.35);
 
-    /// The farthest and the last outward distance in small steps, for a turn at 1 m/s, m.
+    /// The farthest and the last outward distance for a turn at 1 m/s, computed in small steps, m.
     fn stepped(from_rad: f64, by_rad: f64) -> (f64, f64) {
         let steps = 100_000;
         let dt_s = by_rad.abs() / HANDLING.turn_rad_s / f64::from(steps);

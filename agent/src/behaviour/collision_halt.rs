@@ -1,5 +1,5 @@
-//! The collision halt: a boat that has come too close to another stops, whatever other behaviours
-//! want, until it is released. In the games of 2023, people separated such boats.
+//! The collision halt: a boat that has come too close to another boat stops, whatever other
+//! behaviours want, until it is released. In the games of 2023, people separated such boats.
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
@@ -20,8 +20,8 @@ enum Halt {
     Halted {
         since: SimTime,
     },
-    /// Released after its time limit with others still near; it halts again only after it has been
-    /// clear of them.
+    /// Released after its time limit with others still near; the boat halts again only after it has
+    /// been clear of them.
     Released,
 }
 
@@ -49,13 +49,13 @@ impl HaltingAvoidance {
             return Halt::Clear;
         };
         // Three times the halt distance by default: if a halt ended at the distance at which it
-        // begins, it would begin again at once.
+        // begins, it would start again at once.
         let release_m = value(release_m).unwrap_or(3.0 * halt_m);
         let release_s = value(release_s);
         let distances = situation
             .others()
             .map(|other| situation.at.distance(other.at));
-        // All boats, including those that `contacts` excludes: the halt is about hulls, not tags.
+        // All boats, even those that `contacts` excludes: the halt concerns hulls, not tags.
         let nearest_m = distances.fold(f64::INFINITY, f64::min);
         let is_clear = nearest_m >= release_m.max(halt_m);
         match self.halt {

@@ -24,8 +24,8 @@ impl BehaviourLogic for ConstantHeading {
 impl BehaviourLogic for ConstantSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         output.add(&Objective::speed(Peak {
-            // A summit beyond the top speed would lower the utility of the top speed, and the
-            // course would outweigh it.
+            // A summit above the top speed would lower the utility of the top speed, and the course
+            // would outweigh it.
             summit: self
                 .speed_m_s
                 .value(situation)
@@ -40,8 +40,8 @@ impl BehaviourLogic for ConstantSpeed {
 
 impl BehaviourLogic for FullStop {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        // A preference, not a command: a stationary boat cannot avoid an approaching one. It has no
-        // preference for a course.
+        // A preference, not a command: a stationary boat cannot avoid an approaching one. Any
+        // course will do.
         output.add(&Objective::speed(Peak::tent(
             0.0,
             situation.model.speed_max_m_s,

@@ -1,5 +1,5 @@
-//! Cut range: closes in on a boat, by the current closing speed and the later closest point of
-//! approach.
+//! Cut range: closes in on a boat, weighing the current closing speed against the later closest
+//! point of approach.
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Approach, Closest, Closing, Objective};
@@ -18,7 +18,7 @@ impl BehaviourLogic for CutRange {
             return;
         }
         let patience = self.patience.value(situation) / 100.0;
-        // Candidates are relative to the water, so the contact's velocity is too.
+        // Candidates are relative to the water, so use the contact's velocity through the water.
         let velocity = contact.velocity() - situation.motion.drift();
         let closing = Closing {
             offset: line,
@@ -29,7 +29,7 @@ impl BehaviourLogic for CutRange {
             velocity,
             horizon_s: self.time_on_leg_s.value(situation),
             min_m: 0.0,
-            // Only getting closer counts, so the utility is scaled by the present distance.
+            // Only getting closer counts, so scale the utility by the current distance.
             max_m: distance_m.max(1.0),
             touch_m: 0.0,
             approach: Approach::Seek,

@@ -39,12 +39,12 @@ impl BehaviourLogic for Intercept {
     }
 }
 
-/// The earliest point at which a boat at `from`, going straight at this speed, meets a contact of
-/// constant velocity; the contact's present position if they never meet.
+/// The earliest point at which a boat at `from`, driving straight at this speed, meets a contact of
+/// constant velocity; the contact's current position if they never meet.
 pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: MovingPoint) -> Ned {
     let time_s = meeting_time_s(contact.at - from, contact.velocity, speed_m_s);
-    // A faster contact that moves away cannot be met. The boat steers for its present position,
-    // because it may turn.
+    // A faster contact that moves away cannot be met. The boat steers for the contact's current
+    // position, because the contact may turn.
     contact.at + contact.velocity.scaled(time_s.unwrap_or(0.0))
 }
 
@@ -90,7 +90,7 @@ mod tests {
                 "{point:?}: {times_s:?}"
             );
         }
-        // A faster contact moving away is chased at its present position.
+        // A faster contact that moves away is chased at its current position.
         let got = meeting_point(Ned::default(), 1.0, contact(10.0, 0.0, 2.0, 0.0));
         assert_eq!(
             got,

@@ -31,7 +31,7 @@ impl LoiterBehaviour {
         }
     }
 
-    /// Chooses the first corner and the direction, by the corners ahead in that direction.
+    /// Chooses the first corner and the direction, from the corners ahead in each direction.
     fn choose(&mut self, situation: &Situation) {
         let centre = centre_of(&self.corners);
         let out = situation.at - centre;
@@ -83,8 +83,8 @@ impl BehaviourLogic for LoiterBehaviour {
         if self.corners.len() < 3 {
             return;
         }
-        // A boat driven off by an evasion or a tag rejoins the nearest part of the polygon, not its
-        // previous target corner.
+        // A boat forced away by an evasion or a tag rejoins the nearest part of the polygon, not
+        // its previous target corner.
         let far =
             distance_to_outline(&self.corners, situation.at) > self.task.acquire_m.value(situation);
         if self.target.is_none() || far {
@@ -115,7 +115,7 @@ impl BehaviourLogic for LoiterBehaviour {
     }
 }
 
-/// The corners of a shape, clockwise; none if one of its places is unknown.
+/// The corners of a shape, clockwise; none if a place in it is unknown.
 pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec<Ned>) {
     corners.clear();
     match shape {

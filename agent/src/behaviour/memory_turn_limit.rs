@@ -25,13 +25,13 @@ impl MemoryTurnLimitBehaviour {
         }
     }
 
-    /// The mean of the remembered headings, rad, as a mean of directions.
+    /// The mean of the remembered headings as directions, rad.
     fn mean_rad(&self) -> f64 {
         let mut sum_sin = 0.0;
         let mut sum_cos = 0.0;
         for (_, heading_rad) in &self.headings {
             let (sin, cos) = math::sin_cos(*heading_rad);
-            // A mean of directions, not of angles: the mean of 359 and 1 degrees is north.
+            // Average directions, not angles: the mean of 359 and 1 degrees is north.
             (sum_sin, sum_cos) = (sum_sin + sin, sum_cos + cos);
         }
         math::atan2(sum_sin, sum_cos)

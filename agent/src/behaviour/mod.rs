@@ -37,7 +37,8 @@ pub(crate) trait BehaviourLogic: DynClone + Send {
     /// Observes the situation of a decision, whether the behaviour runs or not.
     fn observe(&mut self, _situation: &Situation) {}
 
-    /// The variable that this behaviour sets and the index of its text, whether it runs or not.
+    /// The variable that this behaviour sets and the index of its string value, whether it runs or
+    /// not.
     fn option(&self) -> Option<(u16, usize)> {
         None
     }

@@ -3,13 +3,13 @@
 use crate::situation::{OtherBoat, Situation};
 use scenario::strategy::{Boat, Contacts, NEAREST_MAX};
 
-/// Look-ahead for entering the side on which the boat can be tagged, s.
+/// Look-ahead for entering the side where the boat can be tagged, s.
 const TAG_FORESIGHT_S: f64 = 5.0;
 
 /// The nearest few, without heap allocation; no behaviour responds to more.
 #[derive(Clone)]
 pub(super) struct Nearest {
-    /// Distance, m, and index; nearest first, then lowest index.
+    /// Distance (m) and index; nearest first, then lowest index.
     entries: [(f64, usize); NEAREST_MAX],
     count: usize,
 }
@@ -33,7 +33,7 @@ impl Nearest {
     pub(super) fn add(&mut self, entry: (f64, usize)) {
         let place = self.entries[..self.count].partition_point(|known| *known <= entry);
         // At most sixteen, so that the cost of a decision is bounded for any fleet; the nearest, so
-        // that the order of the list drops none of them.
+        // that the order of the list does not matter.
         if place < NEAREST_MAX {
             self.count = (self.count + 1).min(NEAREST_MAX);
             self.entries[place..self.count].rotate_right(1);
@@ -63,7 +63,7 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
         Contacts::All => true,
         Contacts::Enemies => other.is_enemy,
         Contacts::Mates => !other.is_enemy,
-        // Boats that keep clear of enemies by more than the tag distance never tag anyone, and all
+        // Boats that stay farther from enemies than the tag distance never tag anyone, and all
         // strategies score alike. A strategy may therefore avoid only boats with which no tag is
         // possible.
         Contacts::NoTag => !other.is_enemy || other.tagged || situation.own.tagged,
@@ -74,7 +74,7 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
             opponent == Some(other.vehicle) && is_meant(Contacts::Taggers, situation, other)
         }
         Contacts::Taggers => {
-            // An enemy tags only on its own side; it already counts when this boat is about to
+            // An enemy tags only on its own side, and already counts when this boat is about to
             // enter that side.
             let soon = situation.at + situation.velocity.scaled(TAG_FORESIGHT_S);
             let exposed =

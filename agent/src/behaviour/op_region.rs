@@ -10,18 +10,18 @@ use primitives::{Ned, SimTime};
 use scenario::strategy::{BeyondHalt, OpRegion};
 use std::f64::consts::PI;
 
-/// A returning boat steers for a point this far inside the edge, m.
+/// How far inside the edge a returning boat steers for, m.
 const WELL_IN_M: f64 = 5.0;
 /// Additional distance from the edges, as seconds of the drift's standard deviation, because waves
-/// and gusts displace a boat and delay its turns. In a gale over a lake that deviation is
-/// 0.3 to 0.5 m/s. The farthest metres count little, or a few centimetres would outweigh the boat's
+/// and gusts displace a boat and delay its turns. In a gale over a lake that deviation is 0.3 to
+/// 0.5 m/s. The farthest metres count little; otherwise a few centimetres would outweigh the boat's
 /// task, which has a twentieth of the weight.
 const GUST_S: f64 = 36.0;
 /// Speed range from the recovery speed to zero utility, m/s: the boat returns as slowly as
 /// configured.
 const RECOVERY_BASE_M_S: f64 = 0.5;
 
-/// The side of the edge on which the boat counts.
+/// The side of the edge on which the boat counts as being.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     In,
@@ -32,7 +32,7 @@ enum Side {
 pub(super) struct OpRegionBehaviour {
     task: OpRegion,
     side: Side,
-    /// When the boat crossed from the side on which it counts to the other.
+    /// When the boat crossed from the side on which it counts to the other side.
     crossed: Option<SimTime>,
     table: Table,
     instructions: Instructions,
@@ -51,7 +51,7 @@ impl OpRegionBehaviour {
         }
     }
 
-    /// A boat counts as outside, or as inside again, once it has been there for a while.
+    /// A boat counts as outside, or inside again, only once it has been there for a while.
     fn debounce(&mut self, situation: &Situation, inside_m: f64) {
         let (is_other, wait_s) = match self.side {
             Side::In => (inside_m < 0.0, self.task.exit_s.value(situation)),
@@ -62,8 +62,8 @@ impl OpRegionBehaviour {
             return;
         }
         let since = *self.crossed.get_or_insert(situation.now);
-        // Seconds are rounded, nanoseconds are not: without this tolerance a wait may last one
-        // decision longer.
+        // Seconds are rounded, nanoseconds are not: without this tolerance, a wait may last one
+        // decision too long.
         if (situation.now - since).as_s() + 1e-9 >= wait_s {
             self.side = if self.side == Side::In {
                 Side::Out
@@ -91,7 +91,7 @@ impl BehaviourLogic for OpRegionBehaviour {
                 output.stop();
                 return;
             }
-            // Over the ground, so that it returns whatever the drift.
+            // Over the ground, so that the boat returns whatever the drift.
             let (heading_rad, speed_m_s) = situation.motion.steer(
                 situation.at.bearing_rad(region.nearest_inside(situation)),
                 self.task.recovery_speed_m_s.value(situation),
@@ -109,7 +109,7 @@ impl BehaviourLogic for OpRegionBehaviour {
         // and waves.
         let gust_m = GUST_S * situation.motion.spread_m_s();
         let save_m = (save_m + gust_m).max(0.1);
-        // Beyond this distance no course leads out within the look-ahead, and the table is skipped.
+        // Beyond this distance no course leads out within the look-ahead, so skip the table.
         let reach_m = region.reach_m(situation, lookahead_s, save_m);
         if inside_m > reach_m {
             return;
@@ -117,8 +117,8 @@ impl BehaviourLogic for OpRegionBehaviour {
         self.table.clear(output.grid());
         let nav = &situation.own.nav;
         // A straight line from the boat's position predicts that turning around at full speed
-        // clears the edge; a Surveyor at 2 m/s needs 7 s and 9 m for it. The arc reduced departures
-        // from 6.2 to 0.2 per boat-hour (200 games of 120 s, calm water,
+        // clears the edge, but a Surveyor at 2 m/s needs 7 s and 9 m to turn. The arc reduced
+        // departures from 6.2 to 0.2 per boat-hour (200 games of 120 s, calm water,
         // `crates/arena/examples/safety.rs`).
         self.instructions.run(Clearance {
             table: &mut self.table,
@@ -140,12 +140,12 @@ impl BehaviourLogic for OpRegionBehaviour {
 /// The region around the boat.
 #[derive(Clone)]
 struct Region {
-    /// By edge: outward unit normal, and the boat's distance inside the edge, m.
+    /// For each edge: its outward unit normal, and how far inside it the boat is, m.
     edges: [(Ned, f64); 4],
     /// Velocity that wind and current add to the boat's, m/s.
     drift: Ned,
     handling: Handling,
-    /// Distance of the region's edges inside those of the field, m.
+    /// How far the region's edges lie inside those of the field, m.
     margin_m: f64,
 }
 
@@ -163,14 +163,14 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
-            // The present drift if drift is not estimated: a drift over the edge must always count.
+            // The current drift if drift is not estimated: a drift over the edge must always count.
             drift: situation.motion.drift_now(&situation.own.nav),
             handling: situation.motion.handling(),
             margin_m,
         }
     }
 
-    /// The boat's distance inside the region, m; negative outside.
+    /// How far the boat is inside the region, m; negative outside.
     fn inside_m(&self) -> f64 {
         self.edges
             .iter()
@@ -178,7 +178,7 @@ impl Region {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The distance inside from which on no candidate comes near an edge, m.
+    /// How far inside no candidate comes near an edge any more, m.
     fn reach_m(&self, situation: &Situation, lookahead_s: f64, save_m: f64) -> f64 {
         let fastest_m_s = situation
             .model
@@ -195,8 +195,8 @@ impl Region {
     fn nearest_inside(&self, situation: &Situation) -> Ned {
         let field = &situation.model.field;
         let (x, y) = field.along_across(situation.at);
-        // At most half of the field: in a field narrower than twice the margin the target is its
-        // middle, and `clamp` panics if its limits cross.
+        // At most half of the field: in a field narrower than twice the margin, the target is the
+        // centre, and `clamp` panics if its limits cross.
         let within = |v: f64, extent_m: f64| {
             let in_m = (self.margin_m + WELL_IN_M).min(0.5 * extent_m);
             v.clamp(in_m, extent_m - in_m)

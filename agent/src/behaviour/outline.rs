@@ -1,7 +1,7 @@
 //! Outline: the boat's least distance to a polygon, for each course and speed.
 //!
-//! After a decision the boat keeps its motion while it turns, then goes straight. A faster run is a
-//! longer one, so its pass distance is the minimum of its own and those of slower runs.
+//! After a decision the boat keeps its motion while it turns, then drives straight. A faster run
+//! covers a slower one, so its pass distance is the minimum over itself and all slower runs.
 
 use super::steering::CPA_MIN_UTILITY;
 use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
@@ -9,7 +9,7 @@ use primitives::Ned;
 use primitives::instructions::Kernel;
 use rules::field::{is_within, sides};
 
-/// Largest rounding error of a bound, m, with a margin.
+/// Maximum rounding error of a bound, with a margin, m.
 const ROUNDING_M: f64 = 1e-6;
 
 /// A polygon with lower bounds on its distance.
@@ -19,7 +19,7 @@ pub(super) struct Outline {
     sides: Vec<Side>,
     /// Half planes that contain the polygon.
     half_planes: Vec<HalfPlane>,
-    /// The half planes that exclude the boat.
+    /// The half planes in which the boat is not.
     facing: Vec<HalfPlane>,
     /// Where the current run passes each corner.
     feet: Vec<Foot>,
@@ -36,7 +36,7 @@ struct Side {
     per_m2: f64,
 }
 
-/// The points at most this far along an outward unit normal, m.
+/// The points that are at most this far (m) along an outward unit normal.
 #[derive(Clone, Copy)]
 struct HalfPlane {
     normal: Ned,
@@ -44,7 +44,7 @@ struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// The distance of a place outside the half plane, m.
+    /// How far a place is outside the half plane, m.
     #[inline(always)]
     fn out_m(&self, north: f64, east: f64) -> f64 {
         self.normal.north * north + self.normal.east * east - self.reach_m
@@ -123,7 +123,8 @@ impl Outline {
                     north: out * unit.east,
                     east: -out * unit.north,
                 };
-                // Parallel sides share a half plane, because each is tested for all courses.
+                // Parallel sides share a half plane, because each half plane is tested for all
+                // courses.
                 if half_planes
                     .iter()
                     .all(|known| known.normal.dot(normal) < 1.0 - 1e-9)
@@ -218,7 +219,7 @@ impl Outline {
     }
 
     /// The least squared distance of runs of this duration, or `before_m2` if that is less, m².
-    /// Points between the corners and ends considered are farther away.
+    /// Points other than the corners and ends considered are farther away.
     #[inline(always)]
     fn passed_m2(&self, runs: &Runs, after_s: &Lanes<f64>, before_m2: &Lanes<f64>) -> Lanes<f64> {
         let mut least = self.squared_m2(&runs.from.after(&runs.along, after_s));
@@ -257,7 +258,7 @@ pub(super) struct Passes<'a> {
     pub(super) lag: Lag,
     /// Duration of the straight run, s.
     pub(super) horizon_s: f64,
-    /// Pass distances of half and of full utility, m.
+    /// Pass distances of half and full utility, m.
     pub(super) min_m: f64,
     pub(super) max_m: f64,
 }
@@ -334,8 +335,8 @@ impl Passes<'_> {
             if last < 100.0 {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
-                // By rising speed: first those that come no nearer than the turn, then the computed
-                // ones, then the last value for all faster ones.
+                // By ascending speed: first the speeds that come no nearer than the turn, then the
+                // computed ones, then the last value for all higher speeds.
                 let known = std::iter::repeat_n(before.0[i], least);
                 let known = known.chain(
                     self.outline
@@ -363,8 +364,8 @@ impl Passes<'_> {
         duration_s
     }
 
-    /// How far a single half plane proves paths clear of the polygon: from here to the straight
-    /// run's release, start and end points.
+    /// How far a single half plane proves paths clear of the polygon: given the start of the path,
+    /// and the start and end points of the straight run.
     #[inline(always)]
     fn clear_of(&self, start: &Places, begin: &Places, end: &Places) -> Clear {
         let most_m = self.max_m + ROUNDING_M;
@@ -418,7 +419,7 @@ impl Passes<'_> {
                 .passed_m2(&runs, &Lanes::splat(run_m), before_m2);
             self.outline.utilities.push(self.worth(&least_m2));
             // All corners are behind.
-            // A longer run adds nothing: from here on all speeds have the last utility.
+            // A longer run changes nothing: from this speed on, all have the last utility.
             if run_m >= last_m {
                 break;
             }
@@ -426,7 +427,7 @@ impl Passes<'_> {
         first
     }
 
-    /// The distance that all straight runs can go before one may come within `near_m`, m.
+    /// The distance that all straight runs can cover before one may come within `near_m`, m.
     #[inline(always)]
     fn clear_m(&self, begin: &Places, along: &Places, near_m: f64) -> f64 {
         let mut most_m = f64::NEG_INFINITY;
@@ -452,7 +453,7 @@ impl Passes<'_> {
         most_m - ROUNDING_M
     }
 
-    /// Utility of passes, as for contacts: from 0 at no distance to 100 at the largest.
+    /// Utility of passes, as for contacts: from 0 at zero distance to 100 at the largest distance.
     #[inline(always)]
     fn worth(&self, squared_m2: &Lanes<f64>) -> Lanes<f32> {
         let low_per_m = CPA_MIN_UTILITY / larger(self.min_m, f64::MIN_POSITIVE);
@@ -495,7 +496,7 @@ mod tests {
         }
     }
 
-    /// A boat near a polygon of any shape, including self-intersecting ones; also without drift.
+    /// A boat near a polygon of any shape, even a self-intersecting one; the drift may be zero.
     struct Scene {
         corners: Vec<Ned>,
         at: Ned,

@@ -1,4 +1,4 @@
-//! What behaviours produce at one decision: weighted objective functions, and their task status.
+//! The output of behaviours at one decision: weighted objective functions, and their task status.
 
 use crate::ivp::{Grid, Objective, Problem};
 use primitives::VehicleId;
@@ -48,7 +48,7 @@ pub(crate) struct BehaviourOutput<'a> {
     /// Whether the behaviour has reached a waypoint.
     pub(crate) reached: bool,
     pub(crate) complete: bool,
-    /// Whether the behaviour requires the boat to stop, whatever others want.
+    /// Whether the behaviour requires the boat to stop, whatever other behaviours want.
     pub(crate) stop: bool,
 }
 
@@ -88,7 +88,7 @@ impl<'a> BehaviourOutput<'a> {
         self.active = true;
         self.functions.problem.add(weight, objective);
         let mut utilities = Vec::new();
-        // The functions of a decision comprise 100,000 numbers, ten times a second per boat, and
+        // The functions of a decision amount to 100,000 numbers, ten times a second per boat, and
         // are rarely requested.
         if self.functions.shown {
             let grid = self.grid();

@@ -13,7 +13,7 @@ const SPEED_BASE_M_S: f64 = 1.0;
 #[derive(Clone)]
 pub(super) struct PolicyBehaviour {
     task: Policy,
-    /// The model that proposes; `None` for an external source.
+    /// The proposing model; `None` for an external source.
     policy: Option<BoardPolicy>,
 }
 
@@ -76,7 +76,7 @@ impl BehaviourLogic for PolicyBehaviour {
             return;
         };
         // A policy proposes and the helm decides: external proposals are only weighed, and limited
-        // to the boat's abilities.
+        // to the boat's capabilities.
         let speed_m_s = speed_m_s.clamp(0.0, situation.model.speed_max_m_s);
         let (heading_rad, speed_m_s) = situation.motion.steer(course_rad, speed_m_s);
         output.add(&Objective::Coupled {

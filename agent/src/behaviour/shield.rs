@@ -5,7 +5,7 @@ use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use scenario::strategy::Shield;
 
-/// Extra speed per metre from the station, 1/s.
+/// Extra speed per distance from the station, m/s per m.
 const CATCH_UP_PER_S: f64 = 0.5;
 
 impl BehaviourLogic for Shield {
@@ -18,7 +18,7 @@ impl BehaviourLogic for Shield {
         };
         let line = enemy.at - guarded.at;
         let range_m = line.length();
-        // At most half-way, so that the station is never behind a close enemy.
+        // At most half-way, so that a close enemy never gets between boat and place.
         let ahead_m = self.distance_m.value(situation).min(0.5 * range_m);
         let station = if range_m > 1e-6 {
             guarded.at + line.scaled(ahead_m / range_m)
@@ -34,8 +34,8 @@ impl BehaviourLogic for Shield {
                 guarded_m_s + CATCH_UP_PER_S * distance_m,
             )
         } else if guarded_m_s > 0.1 {
-            // On station: matches the guarded place's motion, with the bow to the enemy if it is
-            // stationary.
+            // On station: match the motion of the guarded place; if it is stationary, point the bow
+            // at the enemy.
             (
                 primitives::math::atan2(guarded.velocity.east, guarded.velocity.north),
                 guarded_m_s,

@@ -1,4 +1,4 @@
-//! Station keeping: holds a place, with more weight the farther the boat has drifted away.
+//! Station keeping: holds a place, with a weight that grows with the distance from it.
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
@@ -61,9 +61,9 @@ impl BehaviourLogic for StationKeepBehaviour {
         let speed_m_s = self
             .speed_m_s(situation, distance_m)
             .min(situation.model.speed_max_m_s);
-        // At the station itself every heading is as good as the present one.
+        // At the station itself, every heading is as good as the current one.
         let (heading_rad, speed_m_s) = if speed_m_s > 0.0 {
-            // Through the water against the drift: the boat may need full speed ahead to hold the
+            // Through the water, against the drift: the boat may need full speed ahead to hold its
             // station.
             situation
                 .motion

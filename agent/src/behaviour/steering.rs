@@ -1,5 +1,5 @@
-//! Objective functions shared by several behaviours: a course at a speed, and keeping clear of
-//! something.
+//! Objective functions shared by several behaviours: a course at a speed, and keeping clear of an
+//! object.
 
 use crate::ivp::{Approach, Closest, Lag, Objective, Peak, Side};
 use crate::situation::{MovingPoint, Situation};
@@ -13,30 +13,31 @@ const SPEED_BASE_M_S: f64 = 1.6;
 const SPEED_SUMMIT_DELTA: f64 = 20.0;
 
 /// Utility of a closest point of approach at the least distance. Below that it falls to zero, so
-/// that a boat that is too close comes no closer.
+/// that a boat already too close comes no closer.
 pub(super) const CPA_MIN_UTILITY: f64 = 50.0;
 
-/// The boat's delay in following a decision. Its velocity is through the water, as decisions are.
+/// The boat's delay in following a decision. Its velocity is through the water, like decisions.
 pub(super) fn lag(situation: &Situation) -> Lag {
     let handling = situation.motion.handling();
     Lag {
         velocity: situation.velocity - situation.motion.drift(),
         heading: situation.ahead,
         reaction_s: handling.reaction_s,
-        // The observed turn rate, not only that of the boat file: wind and speed change it.
+        // Use the observed turn rate, not only that in the boat file: wind and speed change it.
         turn_rad_s: handling.turn_rad_s,
         acceleration_m_s2: handling.acceleration_m_s2,
         deceleration_m_s2: handling.deceleration_m_s2,
     }
 }
 
-/// Straight for a place at a speed, weighed equally: the function of MOOS-IvP's waypoints.
+/// Straight towards a place at a given speed, weighed equally: the function of MOOS-IvP's
+/// waypoints.
 pub(super) fn toward(situation: &Situation, to: Ned, speed_m_s: f64) -> Objective<'static> {
     steer(situation, situation.at.bearing_rad(to), speed_m_s, 0.5)
 }
 
-/// A course, rad, and a speed over the ground, limited to the boat's maximum, with the course's
-/// fraction of the utility.
+/// A course (rad) and a speed over the ground, limited to the boat's maximum. `course_share` is the
+/// course's fraction of the utility.
 pub(super) fn steer(
     situation: &Situation,
     course_rad: f64,
@@ -47,7 +48,7 @@ pub(super) fn steer(
     steer_heading(heading_rad, summit, course_share)
 }
 
-/// A heading, rad, and a speed through the water, with the heading's fraction of the utility.
+/// A heading (rad) and a speed through the water, with the heading's fraction of the utility.
 pub(super) fn steer_heading(
     heading_rad: f64,
     summit: f64,
@@ -66,7 +67,7 @@ pub(super) fn steer_heading(
     }
 }
 
-/// The highest speed at which the boat can turn onto a place, m/s; a faster boat circles it. The
+/// The maximum speed at which the boat can turn onto a place, m/s; a faster boat circles it. The
 /// circle that begins along the bow and passes through the place has a diameter of the distance
 /// over the sine of the bearing.
 pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
@@ -77,7 +78,7 @@ pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
 }
 
 /// Keeps clear of the edge of a disc by at least `min_m`, ideally by `max_m`, for the duration of a
-/// leg; by more when passing on a side other than `leave_to`.
+/// leg; by more on a side other than `leave_to`.
 pub(super) fn keep_clear(
     situation: &Situation,
     disc: MovingPoint,
@@ -94,9 +95,9 @@ pub(super) fn keep_clear(
         horizon_s,
         min_m: min_m + radius_m,
         max_m: max_m.max(min_m) + radius_m,
-        // Zero utility where hulls touch, and half at the least distance. In MOOS-IvP a boat that
-        // is too close does not care about coming closer, so that the smallest preference to pursue
-        // decides. With the slope, hulls touched a sixth as often in 150 games.
+        // Zero utility where hulls touch, and half at the least distance. In MOOS-IvP, a boat that
+        // is already too close is indifferent to coming closer, so the smallest preference to
+        // pursue decides. With the slope, hulls touched a sixth as often in 150 games.
         touch_m: radius_m,
         approach: Approach::Avoid {
             at_min: CPA_MIN_UTILITY,

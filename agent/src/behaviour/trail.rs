@@ -6,7 +6,7 @@ use crate::situation::Situation;
 use primitives::{Ned, math};
 use scenario::strategy::Trail;
 
-/// Extra speed per metre from the position, 1/s.
+/// Extra speed per distance from the position, m/s per m.
 const CATCH_UP_PER_S: f64 = 0.2;
 
 impl BehaviourLogic for Trail {
@@ -20,8 +20,8 @@ impl BehaviourLogic for Trail {
         let contact_m_s = contact.velocity().length();
         let distance_m = situation.at.distance(place);
         let fastest_m_s = self.speed_m_s.value(situation);
-        // Within the radius it matches the contact's motion: steering for the exact position would
-        // turn the boat for each small error.
+        // Within the radius, match the contact's motion: steering for the exact position would turn
+        // the boat for each small error.
         let (course_rad, speed_m_s) = if distance_m <= self.radius_m.value(situation) {
             (contact.psi_rad, contact_m_s)
         } else {

@@ -37,8 +37,8 @@ impl WaypointBehaviour {
         if lead_m <= 0.0 || length_m < 1e-6 {
             return to;
         }
-        // A point on the leg ahead of the boat, like MOOS-IvP's `lead`: a boat that was pushed off
-        // returns to the line, not only to its end.
+        // A point on the leg ahead of the boat, like MOOS-IvP's `lead`: a boat pushed off the line
+        // returns to it, not just to its end.
         let along_m = (situation.at - self.from).dot(leg) / length_m + lead_m;
         if along_m >= length_m {
             to

@@ -1,9 +1,10 @@
 //! The helm of one boat: follows a strategy's program and decides course and speed by interval
 //! programming.
 //!
-//! A decision processes the picture, applies the rules, chooses the mode, runs every behaviour that
-//! may run, and selects the course and speed with the largest weighted sum of utilities. Values
-//! posted by behaviours take effect after all have run, so that their order does not matter.
+//! For a decision, the helm processes the picture, applies the rules, chooses the mode, runs every
+//! behaviour that may run, and selects the course and speed with the largest weighted sum of
+//! utilities. Values posted by behaviours take effect after all have run, so that their order does
+//! not matter.
 
 mod report;
 mod run_state;
@@ -37,7 +38,7 @@ struct BehaviourInstance {
 /// The last decision.
 #[derive(Clone, Copy, Debug)]
 enum Decided {
-    /// No decision yet, or the boat holds, for this reason.
+    /// No decision yet, or the boat holds, for the given reason.
     Hold(&'static str),
     /// A course and a speed.
     Steer(Choice),
@@ -56,7 +57,7 @@ pub struct HelmMind {
     posted: Vec<(u16, f64)>,
     decided: Decided,
     /// Creates the helm that replaces this one after a fault that kills the agent, if the scenario
-    /// has any.
+    /// has such faults.
     restarted: Option<Arc<dyn Fn() -> HelmMind + Send + Sync>>,
 }
 
@@ -100,8 +101,8 @@ impl HelmMind {
         let mut helm = HelmMind::new(scenario, vehicle, program);
         let is_killed =
             |fault: &Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
-        // Only if a fault requires it: a copy of the scenario for each boat would be too expensive
-        // in a fleet.
+        // Only if a fault requires it: in a fleet, a copy of the scenario for each boat would be
+        // too expensive.
         if scenario.faults.iter().any(is_killed) {
             let scenario = scenario.clone();
             let program = program.clone();
@@ -112,7 +113,7 @@ impl HelmMind {
         helm
     }
 
-    /// Starts afresh if the picture reports that its agent is back.
+    /// Starts afresh if the picture reports that the agent is back.
     fn restart_if_back(&mut self, picture: &Picture) {
         let back = Event::AgentBack(self.situation.model.me);
         let is_back =
@@ -122,7 +123,7 @@ impl HelmMind {
             .take_if(|_| picture.events.iter().any(is_back))
         {
             // The arena does not kill processes, and its result must match that of separate
-            // processes, so the mind forgets what a restarted process would.
+            // processes, so the mind forgets what a restarted process would forget.
             let shown = self.functions.shown;
             *self = restarted();
             self.functions.shown = shown;
@@ -146,7 +147,7 @@ impl HelmMind {
         }
     }
 
-    /// Lets behaviours observe the situation and policies choose options, before the rules apply.
+    /// Lets behaviours observe the situation and policies choose options, before rules apply.
     fn observe_situation(&mut self) {
         for instance in &mut self.instances {
             instance.logic.observe(&self.situation);
@@ -169,8 +170,8 @@ impl HelmMind {
 
     fn choose_mode(&mut self) {
         // The first part of a mode whose condition holds is active. The last part has no condition,
-        // so exactly one leaf is active. In MOOS the last one that holds is active, and none may
-        // hold.
+        // so exactly one leaf is active. In MOOS the last part that holds is active, and possibly
+        // none.
         let mode = self.program.leaf(&self.situation);
         let before = self.mode.replace(mode);
         if before == Some(mode) {
@@ -266,8 +267,8 @@ impl HelmMind {
         };
         // A fraction of the weights, at most a tenth (checked when the file is loaded): it can
         // delay a change of mind, but not outweigh safety. Edges do not count: they do not move, so
-        // noise does not cause changes of mind near them, and including them would keep a boat
-        // there that is needed elsewhere.
+        // noise causes no changes of mind near them, and counting them would keep a boat there that
+        // is needed elsewhere.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,
@@ -286,8 +287,8 @@ impl HelmMind {
         });
         let nav = &self.situation.own.nav;
         let speed_m_s = nav.surge_m_s - self.situation.motion.drift().dot(self.situation.ahead);
-        // Ties go to the course and speed nearest to the boat's present motion, so that nothing
-        // depends on where the grid begins.
+        // Ties go to the course and speed nearest to the boat's current motion, so that the start
+        // of the grid has no influence.
         let choice = problem.solve(Preference {
             course_rad: nav.psi_rad,
             speed_m_s,
@@ -404,8 +405,8 @@ fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Ve
 }
 
 fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
-    // By the picture's events rather than by comparing facts: a picture may be lost, and its events
-    // arrive with the next one.
+    // Use the picture's events rather than comparing facts: a picture may be lost, and its events
+    // arrive with the next.
     let happened = rule.on.is_none_or(|trigger| {
         let events = picture.events.iter().filter_map(|record| record.logged());
         events
@@ -420,7 +421,7 @@ fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
             .is_none_or(|when| when.is_true(situation))
 }
 
-/// The boats involved in this event, if it is of this kind.
+/// The boats involved in an event, if it is of the given kind.
 fn happening(event: Event, what: What) -> [Option<VehicleId>; 2] {
     match (what, event) {
         (What::Collides, Event::Collided { .. }) => [event.vehicle(), event.other()],

@@ -4,11 +4,11 @@ use messages::helm::RunState;
 use primitives::SimTime;
 use scenario::strategy::Moment;
 
-/// A behaviour's run state, and since when it has been running.
+/// A behaviour's run state, and the start of its current run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BehaviourRun {
     pub(crate) state: RunState,
-    /// When it last started running.
+    /// When the behaviour last started running.
     since: SimTime,
 }
 
@@ -45,17 +45,17 @@ impl BehaviourRun {
         }
     }
 
-    /// Whether it is running.
+    /// Whether the behaviour is running.
     pub(crate) fn runs(&self) -> bool {
         matches!(self.state, RunState::Running | RunState::Active)
     }
 
-    /// How long it has been running.
+    /// How long the behaviour has been running.
     pub(crate) fn running_s(&self, now: SimTime) -> f64 {
         (now - self.since).as_s()
     }
 
-    /// Records whether it produced a function.
+    /// Records whether the behaviour produced a function.
     pub(crate) fn produced(&mut self, active: bool, mut post: impl FnMut(Moment)) {
         match (self.state, active) {
             (RunState::Running, true) => {
@@ -88,7 +88,7 @@ impl BehaviourRun {
 mod tests {
     use super::*;
 
-    /// The moments posted for steps of (may run, active, complete).
+    /// The moments posted for given steps of (may run, active, complete).
     fn posted(perpetual: bool, steps: &[(bool, bool, bool)]) -> (Vec<Moment>, RunState) {
         let mut run = BehaviourRun::new();
         let mut moments = vec![];

@@ -1,16 +1,16 @@
-//! Steadiness: of two nearly equal decisions, the helm takes the one nearer to the last.
+//! Steadiness: of two nearly equal decisions, the helm prefers the one nearer to the last decision.
 //!
-//! If a scene has two ways out, noise favours one and then the other, and a boat that obeys at once
-//! follows neither. Candidates near the last decision therefore get a small bonus. The best of them
+//! If a scene has two ways out, noise favours one, then the other, and a boat that follows at once
+//! takes neither. Candidates near the last decision therefore get a small bonus. The best of them
 //! may still move with the scene, so only changes of mind are delayed.
 
 use crate::ivp::{Choice, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Problem};
 
-/// Courses within this of the last one count as near, rad.
+/// Maximum difference of a near course from the last one, rad.
 const NEAR_RAD: f64 = std::f64::consts::FRAC_PI_6;
-/// Speeds within this of the last one count as near, m/s.
+/// Maximum difference of a near speed from the last one, m/s.
 const NEAR_M_S: f64 = 0.75;
-/// Width of the fall from near to zero, rad or m/s: a step except for rounding.
+/// Width of the fall from near to zero, rad or m/s: a step, apart from rounding.
 const STEP: f64 = 1e-6;
 
 /// The bonus for candidates near the last decision.
@@ -20,15 +20,15 @@ pub(super) struct Steadiness {
 }
 
 impl Steadiness {
-    /// Adds the bonus to a problem, half of the weight each for course and speed; `None` at weight
-    /// 0.
+    /// Adds the bonus to a problem, half of the weight for course and half for speed; `None` at
+    /// weight 0.
     pub(super) fn new(problem: &mut Problem, last: Decision, weight: f64) -> Option<Steadiness> {
         // A full problem has no space for it; a checked program never has that many functions.
         if weight <= 0.0 || problem.len() >= FUNCTIONS_MAX {
             return None;
         }
-        // Near the last decision rather than exactly there: a bonus for that made a boat lag behind
-        // moving targets.
+        // Near the last decision, not exactly there: a bonus for the exact decision made boats lag
+        // behind moving targets.
         let near = |summit, peak_width| Peak {
             summit,
             peak_width,
@@ -46,7 +46,7 @@ impl Steadiness {
         Some(Steadiness { objective, weight })
     }
 
-    /// A choice with the value that behaviours alone give it.
+    /// A choice, with the value that behaviours alone give it.
     pub(super) fn without(&self, grid: &Grid, choice: Choice) -> Choice {
         let Decision { course, speed } = choice.decision;
         let extra = f64::from(

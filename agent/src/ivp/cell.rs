@@ -1,8 +1,8 @@
 //! Cells of the decision grid: neighbouring courses by neighbouring speeds, which share one bound
 //! of a function.
 //!
-//! As velocities they form a ring segment. It lies within a polygon of four corners: at the first
-//! and the last course, at the slowest speed and at the fastest speed, extended so far that the
+//! As velocities they form a ring segment. It lies within a polygon of four corners: on the first
+//! and last course, at the slowest speed and at the fastest speed, the latter extended until the
 //! side between them touches the outer arc. A wide segment uses the square around all speeds
 //! instead.
 
@@ -10,7 +10,7 @@ use super::grid::Grid;
 use super::lanes::{LANES, Lanes, SIDE};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// A wider ring segment counts as a whole disc, rad to either side.
+/// Half-angle above which a ring segment counts as a whole disc, rad.
 const WIDEST_RAD: f64 = FRAC_PI_3;
 
 #[derive(Clone, Copy)]
@@ -26,7 +26,7 @@ pub(super) struct Cell {
     pub(super) slow: f32,
     pub(super) fast: f32,
     pub(super) mean: f32,
-    /// The factor of the outer corners beyond the fastest speed; 1 for a whole disc.
+    /// The factor by which the outer corners exceed the fastest speed; 1 for a whole disc.
     stretch: f32,
     /// Whether it counts as a whole disc.
     pub(super) is_disc: bool,
@@ -105,7 +105,7 @@ impl CellSize {
             east: part(5),
             half: self.half_rad.unwrap_or(std::f64::consts::PI) as f32,
             // The chord between two corners at the fastest speed lies inside the arc by this
-            // factor. Extended by it, the polygon contains every velocity of the cell.
+            // factor. With this extension, the polygon contains every velocity of the cell.
             stretch: self
                 .half_rad
                 .map_or(1.0, |half_rad| 1.0 / primitives::math::sin_cos(half_rad).1)
@@ -183,13 +183,13 @@ pub(super) struct Cells {
     /// Groups of sectors, speeds varying fastest: a group that leads away from the best courses is
     /// excluded as a whole.
     pub(super) sectors: Vec<(CourseSpans, SpeedSpans)>,
-    /// For the tiles of a sector, by its index along the courses; courses vary fastest.
+    /// For the tiles of a sector, by the sector's index along the courses; courses vary fastest.
     pub(super) tile_courses: Vec<CourseSpans>,
-    /// For the tiles of a sector, by its index along the speeds.
+    /// For the tiles of a sector, by the sector's index along the speeds.
     pub(super) tile_speeds: Vec<SpeedSpans>,
     /// Courses of a tile's points, by the tile's index along the courses: north, east.
     pub(super) points: Vec<(Lanes<f32>, Lanes<f32>)>,
-    /// Speeds of a tile's points, m/s, by the tile's index along the speeds.
+    /// Speeds of a tile's points, by the tile's index along the speeds, m/s.
     pub(super) point_speeds: Vec<Lanes<f32>>,
 }
 
@@ -252,7 +252,7 @@ mod tests {
         }
     }
 
-    /// A random formula of any kind.
+    /// A random formula of either kind.
     fn field(stream: &mut Stream, grid: &Grid) -> Field {
         let fastest_m_s = grid.speed_max_m_s();
         let range_m = [3.0, 30.0, 400.0][stream.below(3) as usize];
@@ -293,7 +293,7 @@ mod tests {
         field
     }
 
-    /// Upper and lower bound of the function over a cell.
+    /// Upper and lower bounds of the function over a cell.
     fn bounds(field: &Field, cell: &Cell) -> (f32, f32) {
         match field {
             Field::Closest(ready) => {

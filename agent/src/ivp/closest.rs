@@ -10,12 +10,13 @@
 //!
 //! since the square of the distance is a parabola in `t`.
 //!
-//! A boat does not turn or brake at once. With a [`Lag`] it keeps its motion for its reaction time,
-//! goes straight to the end of its [turn](Turning), and then follows the candidate at the mean
-//! [speed](MeanSpeed) until it meets the contact. The least distance of these three legs counts.
+//! A boat does not turn or brake at once. With a [`Lag`], it keeps its motion for its reaction
+//! time, moves straight to the end of its [turn](Turning), and then follows the candidate at the
+//! mean [speed](MeanSpeed) until it meets the contact. The least distance of these three legs
+//! counts.
 //!
-//! Two boats that avoid each other may choose the same side and collide. If they are to leave each
-//! other on a [`Side`], distances count less where the line of sight turns to the other side.
+//! Two boats that avoid each other may choose the same side and collide. If a [`Side`] is given on
+//! which to leave each other, distances count less where the line of sight turns to the other side.
 //!
 //! Bounds over a cell: its first and last course at its slowest and fastest speed are four paths.
 //! At any time every other path of the cell is between them, except for the bend of the arcs
@@ -29,14 +30,13 @@ use super::lanes::{larger, smaller};
 use super::turn::{Fan, Lag, MeanSpeed, Turn, Turning, Vector};
 use primitives::Ned;
 
-/// Maximum relative rounding error in single precision, with a margin, relative to the lengths
-/// involved.
+/// Maximum rounding error in single precision relative to the lengths involved, with a margin.
 const ROUNDING: f64 = 1e-5;
 
 /// The slope of a step.
 const STEP: f64 = 1e12;
 
-/// Minimum time to meet a contact, even for contacts that are never met, s.
+/// Minimum time to meet a contact, even one that is never met, s.
 const MEETING_MIN_S: f64 = 1.0;
 
 /// A side of a boat.
@@ -49,7 +49,7 @@ pub enum Side {
 }
 
 /// Weight of a distance kept on the wrong side: so small that a boat does not turn there to avoid a
-/// third one.
+/// third boat.
 const OTHER_SIDE: f32 = 0.2;
 
 /// Whether to avoid or to approach the contact.
@@ -57,7 +57,7 @@ const OTHER_SIDE: f32 = 0.2;
 pub enum Approach {
     /// Farther is better: linear from 0 where they touch to `at_min` at the least distance, and
     /// from there to 100 at the largest. MOOS-IvP has a step of 25 at the least distance and zero
-    /// below it, so that a boat that is too close does not care about coming closer.
+    /// below it, so a boat that is too close is indifferent to coming closer.
     Avoid {
         /// Utility at the least distance, 0 to 100.
         at_min: f64,
@@ -75,15 +75,15 @@ pub struct Closest {
     pub offset: Ned,
     /// Velocity of the contact, m/s.
     pub velocity: Ned,
-    /// How long course and speed are kept after the turn, s.
+    /// How long course and speed are held after the turn, s.
     pub horizon_s: f64,
     /// The least distance to keep, m.
     pub min_m: f64,
-    /// The largest distance that makes a difference, m.
+    /// The distance beyond which utility no longer changes, m.
     pub max_m: f64,
-    /// The distance at which they touch, m; the utility is 0 there and below.
+    /// The distance at which hulls touch, m; the utility is 0 at and below it.
     pub touch_m: f64,
-    /// Whether to avoid or to approach.
+    /// Whether to avoid or approach the contact.
     pub approach: Approach,
     /// Own ship's delay; `None` if it follows decisions at once.
     pub lag: Option<Lag>,
@@ -141,15 +141,15 @@ impl Closest {
             None => ((0.0, 0.0), 1.0),
         };
         // The mean speed depends on the meeting time, which depends on the speed. All candidates
-        // use the meeting time at present velocities; solved for each, the squared distance would
-        // no longer be a parabola.
+        // use the meeting time at current velocities; with a separate time for each, the squared
+        // distance would no longer be a parabola.
         let meeting_s = f64::from(time(offset, present, self.horizon_s as f32)).max(MEETING_MIN_S);
         Some(Ready {
             start: (
                 offset.0 + present.0 * reaction,
                 offset.1 + present.1 * reaction,
             ),
-            // Motion within the reaction time is the same for all candidates, so it is computed
+            // Motion within the reaction time is the same for all candidates, so compute it only
             // once.
             least_before: square(offset, present, time(offset, present, reaction)),
             velocity: single(self.velocity),
@@ -170,8 +170,7 @@ impl Closest {
             beside,
             other_side,
             // Bounds and points use different formulas in single precision. A bound too tight by a
-            // rounding error would miss the best point, so all bounds are widened by the largest
-            // error.
+            // rounding error would miss the best point, so widen all bounds by the largest error.
             margin: (ROUNDING * scale_m) as f32,
             group: 0,
         })
@@ -181,7 +180,7 @@ impl Closest {
 /// The function in single precision, m and s throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
-    /// Where the contact is when a decision takes effect, and the square of the least distance
+    /// The contact's position when a decision takes effect, and the square of the least distance
     /// until then.
     start: Vector,
     least_before: f32,
@@ -190,26 +189,26 @@ pub(super) struct Ready {
     speed: f32,
     horizon: f32,
     min: f32,
-    /// The utility at the least distance; per metre beyond it; the distance at which they touch, m;
-    /// and the utility per metre between these two.
+    /// The utility at the least distance; per metre beyond it; the distance at which they touch
+    /// (m); and the utility per metre between these two.
     worth: [f32; 4],
     /// Whether to approach.
     pub(super) seek: bool,
     /// Own ship's turn.
     pub(super) turning: Turning,
     mean_speed: MeanSpeed,
-    /// Perpendicular to the present line of sight, towards the side on which to leave the contact;
+    /// Perpendicular to the current line of sight, towards the side on which to leave the contact;
     /// and the weight of distances on the other side.
     beside: Vector,
     other_side: f32,
-    /// Largest rounding error of a bound on a distance, m.
+    /// Maximum rounding error of a bound on a distance, m.
     margin: f32,
-    /// Functions of a search with the same group have the same distances.
+    /// Functions of a search with the same group number have the same distances.
     pub(super) group: usize,
 }
 
-/// The contact's relative motion on the paths of a cell: to its first and its last course, each at
-/// its slowest and fastest speed, and one in the middle.
+/// The contact's relative motion on the paths of a cell: to its first and last course, each at its
+/// slowest and fastest speed, and one in the middle.
 #[derive(Clone, Copy)]
 pub(super) struct Ways {
     /// The contact's position after the turns.
@@ -218,20 +217,20 @@ pub(super) struct Ways {
     from_first: [Vector; 2],
     from_last: [Vector; 2],
     /// For the middle path: the contact's position after the turn, its motion until then and the
-    /// fraction of that until it was nearest, its motion afterwards, and the time at which it is
+    /// fraction of that motion until it was nearest, its motion afterwards, and the time when it is
     /// nearest.
     middle: Vector,
     past: Vector,
     share: f32,
     w: Vector,
     t: f32,
-    /// How far other paths may deviate from the polygon of these, m, and how fast that grows, m/s.
+    /// Maximum deviation of other paths from the polygon of these (m), and its growth rate (m/s).
     off: f32,
     bend: f32,
 }
 
 impl Ready {
-    /// Utility of a course, a unit vector, at a speed, m/s.
+    /// Utility of a course (a unit vector) at a speed (m/s).
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let course = (north, east);
         // Reports and tests use the same arithmetic as the search, lane by lane, so the displayed
@@ -239,7 +238,7 @@ impl Ready {
         self.worth(self.distance(&self.turning.to(course), course, speed))
     }
 
-    /// Whether another function has the same distances.
+    /// Whether the given function has the same distances.
     pub(super) fn has_distances_of(&self, other: &Ready) -> bool {
         let ways = |ready: &Ready| {
             (
@@ -259,8 +258,8 @@ impl Ready {
             && self.mean_speed == other.mean_speed
     }
 
-    /// The effective least distance, m, on a course, a unit vector, at a speed after the turn to
-    /// it.
+    /// The effective least distance (m) on a course (a unit vector) at a speed after the turn to
+    /// that course.
     #[inline(always)]
     pub(super) fn distance(&self, turn: &Turn, course: Vector, speed: f32) -> f32 {
         let at = self.after(turn);
@@ -270,14 +269,14 @@ impl Ready {
         let turning = square(self.start, past, time(self.start, past, 1.0));
         let t = time(at, w, self.horizon);
         let straight = square(at, w, t);
-        // The contact's position when it is nearest, to see whether the line of sight has turned to
-        // the wrong side by then.
+        // The contact's position when it is nearest, which shows whether the line of sight has
+        // turned to the wrong side by then.
         let share = if dot(self.beside, (at.0 + w.0 * t, at.1 + w.1 * t)) < 0.0 {
             self.other_side
         } else {
             1.0
         };
-        // One square root for all three legs: the least distance has the least square.
+        // One square root for all three legs: the smallest square belongs to the smallest distance.
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 
@@ -342,11 +341,11 @@ impl Ready {
         let least = smaller(smaller(straight, turning), self.least_before.sqrt())
             - ways.off
             - ways.bend * self.horizon;
-        // As if all of them passed on the wrong side.
+        // As if all paths passed on the wrong side.
         smaller(least * self.other_side, least)
     }
 
-    /// The contact's position when own ship is on its course.
+    /// The contact's position when own ship has reached its course.
     #[inline(always)]
     fn after(&self, turn: &Turn) -> Vector {
         let past = (
@@ -356,7 +355,7 @@ impl Ready {
         (self.start.0 + past.0, self.start.1 + past.1)
     }
 
-    /// The contact's velocity relative to own ship on a course, a unit vector, at a speed, m/s.
+    /// The contact's velocity relative to own ship on a course (a unit vector) at a speed, m/s.
     #[inline(always)]
     fn passing(&self, course: Vector, speed: f32) -> Vector {
         (
@@ -365,7 +364,7 @@ impl Ready {
         )
     }
 
-    /// Utility of a distance, without a branch between approaching and avoiding.
+    /// Utility of a distance, with no branch between approaching and avoiding.
     #[inline(always)]
     pub(super) fn worth(&self, distance: f32) -> f32 {
         let [at_min, slope, touch, inner_slope] = self.worth;
@@ -379,7 +378,7 @@ impl Ready {
 /// The time of the closest point of approach, clamped to 0 and `longest`, s.
 #[inline(always)]
 fn time(p: Vector, w: Vector, longest: f32) -> f32 {
-    // At almost zero relative speed any time will do. A maximum vectorises, unlike a branch on
+    // At almost zero relative speed, any time will do. A maximum vectorises, unlike a branch on
     // zero.
     let time = -dot(p, w) / larger(dot(w, w), 1e-20);
     smaller(larger(time, 0.0), longest)
@@ -390,7 +389,7 @@ fn minus(a: Vector, b: Vector) -> Vector {
     (a.0 - b.0, a.1 - b.1)
 }
 
-/// The reciprocal length of a vector that is not very short.
+/// The reciprocal length of a vector, unless it is very short.
 #[inline(always)]
 fn per_length(v: Vector) -> f32 {
     1.0 / larger(dot(v, v).sqrt(), 1e-6)

@@ -1,13 +1,13 @@
-//! How fast own ship closes on a point or contact, or moves away from it.
+//! The rate at which own ship closes on, or moves away from, a point or contact.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
 use primitives::Ned;
 
-/// Utility of the closing speed: linear from 0, opening at the greatest possible rate, to 100,
-/// closing at that rate.
+/// Utility of the closing speed: linear from 0 (opening at the maximum possible rate) to 100
+/// (closing at that rate).
 ///
-/// The closing speed is the sum of both velocities along the present line of sight. At zero
+/// The closing speed is the sum of both velocities along the current line of sight. At zero
 /// distance there is no line of sight, and all candidates get 50.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closing {
@@ -39,7 +39,7 @@ impl Closing {
         };
         let contact_m_s = self.velocity.length();
         let towards_m_s = -(sight_north * self.velocity.north + sight_east * self.velocity.east);
-        // Both at top speed, so that the utility uses its full range for any contact.
+        // Assumes both at top speed, so that the utility uses its full range for any contact.
         let slope = 50.0 / (speed_max_m_s + contact_m_s);
         Some(Ready {
             north: sight_north as f32,
@@ -56,7 +56,7 @@ pub(super) struct Ready {
     /// The line of sight, a unit vector.
     north: f32,
     east: f32,
-    /// Utility per m/s along it.
+    /// Utility per m/s along the line of sight.
     slope: f32,
     /// Utility at zero speed.
     rest: f32,
@@ -66,7 +66,7 @@ pub(super) struct Ready {
 const ROUNDING: f32 = 1e-3;
 
 impl Ready {
-    /// Utility of a course, a unit vector, at a speed, m/s.
+    /// Utility of a course (a unit vector) at a speed (m/s).
     #[inline(always)]
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let along = (self.north * north + self.east * east) * self.slope;

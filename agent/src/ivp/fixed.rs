@@ -4,11 +4,11 @@ use super::lanes::{larger, smaller};
 
 /// The step to which weight times utility is rounded.
 ///
-/// A product is then at most 6.4 million steps, exact in an `f32`, and [`FUNCTIONS_MAX`] of them
-/// sum exactly in an `i32`.
+/// A product is then at most 6.4 million steps, which is exact in an `f32`, and the sum of
+/// [`FUNCTIONS_MAX`] products is exact in an `i32`.
 pub const QUANTUM: f64 = 1.0 / 64.0;
 
-/// The largest priority weight; larger ones are clamped to it.
+/// The maximum priority weight; larger weights are clamped to it.
 pub const WEIGHT_MAX: f64 = 1000.0;
 
 /// The maximum number of functions in a problem.
@@ -17,11 +17,11 @@ pub const FUNCTIONS_MAX: usize = 256;
 // A checked program never exceeds this limit.
 const _: () = assert!(scenario::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
 
-/// The value of an absent place: below all others, and far enough from overflow for a sum of two.
+/// The value of an absent place: below all others, but the sum of two does not overflow.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
 
-/// From here to twice this value, the numbers of an `f32` are the integers, so adding to it rounds
-/// to an integer.
+/// From this number to twice its value, the numbers of an `f32` are the integers, so adding to it
+/// rounds to an integer.
 const INTEGERS: f32 = (1_u32 << 23) as f32;
 
 // A product is smaller, so the sum of both rounds to nearest, half to even.
@@ -35,14 +35,14 @@ impl Weight {
     /// The weight clamped to 0 to [`WEIGHT_MAX`]; 0 for a non-finite one.
     pub(super) fn new(weight: f64) -> Weight {
         debug_assert!(weight.is_finite(), "weight {weight}");
-        // Weights may be expressions of a strategy, so their values are known only now.
+        // Weights may be expressions of a strategy, so their values are known only at run time.
         let weight = if weight.is_finite() {
             weight.clamp(0.0, WEIGHT_MAX)
         } else {
             0.0
         };
-        // Single precision here and in the bounds: with two different roundings a bound could fall
-        // below its points.
+        // Single precision, as in the bounds: with two different roundings a bound could fall below
+        // its points.
         Weight((weight / QUANTUM) as f32)
     }
 
@@ -59,8 +59,7 @@ impl Weight {
     /// A weighted utility (0 to 100) in quanta, rounded to nearest, half to even.
     #[inline(always)]
     pub(super) fn quanta(self, utility: f32) -> i32 {
-        // Without a float-to-integer conversion, which is slow because it handles out-of-range
-        // values.
+        // No float-to-integer conversion, which is slow because it handles out-of-range values.
         (utility * self.0 + INTEGERS).to_bits() as i32 - INTEGERS.to_bits() as i32
     }
 }

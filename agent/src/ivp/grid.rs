@@ -3,8 +3,8 @@
 use super::lanes::{LANES, Lanes};
 use std::f64::consts::TAU;
 
-/// Ticks between neighbouring courses. Angles from a course are whole ticks, so that a turned or
-/// mirrored scene has exactly the same angles. An `f64` represents them exactly.
+/// Number of ticks between neighbouring courses. Angles from a course are whole ticks, so that a
+/// turned or mirrored scene has exactly the same angles. An `f64` represents them exactly.
 const TICKS: f64 = 65_536.0;
 
 /// Courses over the full circle, and speeds from rest to the top speed, both evenly spaced.
@@ -25,7 +25,7 @@ pub struct Grid {
 /// A group of courses; lanes beyond the last course repeat it.
 #[derive(Clone, Debug)]
 pub(crate) struct Courses {
-    /// Rad clockwise from north.
+    /// The courses in rad, clockwise from north.
     pub(crate) rad: Lanes<f64>,
     /// Unit vectors.
     pub(crate) north: Lanes<f64>,
@@ -37,7 +37,7 @@ impl Grid {
     ///
     /// # Panics
     /// With less than one course or two speeds, more than 65,536 of either, or a top speed that is
-    /// not positive and finite.
+    /// not both positive and finite.
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
         assert!(
             (1..=1 << 16).contains(&courses),
@@ -80,7 +80,7 @@ impl Grid {
         }
     }
 
-    /// Whether another grid has the same points.
+    /// Whether the other grid has the same points.
     pub(super) fn is_same(&self, other: &Grid) -> bool {
         let size = |grid: &Grid| (grid.courses, grid.speeds, grid.speed_max_m_s);
         size(self) == size(other)
@@ -148,7 +148,7 @@ impl Grid {
         ((part * self.circle()).round() as i64).rem_euclid(self.circle() as i64) as f64
     }
 
-    /// Ticks from an angle (in ticks) to course `k`, the short way, positive to starboard. Half a
+    /// Ticks from an angle (in ticks) to course `k`, the shorter way, positive to starboard. Half a
     /// turn counts as starboard.
     #[inline(always)]
     pub(super) fn ticks_between(&self, from: f64, k: usize) -> f64 {
@@ -179,10 +179,10 @@ fn course_rad(k: usize, n: usize) -> f64 {
     k as f64 * TAU / n as f64
 }
 
-/// The unit vector of course `k` of `n`, mirrored from one in the first octant.
+/// The unit vector of course `k` of `n`, mirrored from a course in the first octant.
 fn direction(k: usize, n: usize) -> (f32, f32) {
     // Mirrored rather than computed for each course: library cosines of mirrored angles may differ
-    // in the last bit, and a mirrored game would then take another course.
+    // in the last bit, and a mirrored game would then take a different course.
     if 2 * k > n {
         let (north, east) = direction(n - k, n);
         return (north, -east);

@@ -1,8 +1,8 @@
 //! Groups of numbers that fill a vector register.
 
 /// Number of lanes.
-// Sixteen `f32` are one AVX-512 register. With narrower registers the compiler uses two or four,
-// with the same bits, because no lane depends on the register width.
+// Sixteen `f32` fill one AVX-512 register. With narrower registers the compiler uses two or four;
+// the bits are the same, because no lane depends on the register width.
 pub(crate) const LANES: usize = 16;
 
 /// Courses and speeds per tile side: a tile is `SIDE` courses by `SIDE` speeds, a sector `SIDE` by
@@ -13,7 +13,7 @@ const _: () = assert!(SIDE * SIDE == LANES);
 
 /// A group of numbers. Plain loops over all lanes become single instructions.
 #[derive(Clone, Copy, Debug)]
-// A cache line and the widest register: loads that straddle two lines cost twice.
+// A cache line and the widest register: loads that straddle two lines cost twice as much.
 #[repr(align(64))]
 pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
 
@@ -24,7 +24,7 @@ impl<T: Copy> Lanes<T> {
         Lanes([number; LANES])
     }
 
-    /// A number for each lane. Not for hot code: closures are not always inlined.
+    /// One number for each lane. Not for hot code: closures are not always inlined.
     pub(super) fn each(number: impl FnMut(usize) -> T) -> Lanes<T> {
         Lanes(std::array::from_fn(number))
     }
@@ -34,8 +34,8 @@ impl<T: Copy> Lanes<T> {
     pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {
         let mut halves = self.0;
         let mut width = LANES / 2;
-        // In halves with always the same pairs, so that sums and comparisons have the same order on
-        // every machine.
+        // In halves, always with the same pairs, so that sums and comparisons have the same order
+        // on every machine.
         while width > 0 {
             for i in 0..width {
                 halves[i] = of_two(halves[i], halves[i + width]);
@@ -81,7 +81,7 @@ impl Lanes<i32> {
 /// The larger of two numbers, as in processor instructions: the second if unordered.
 #[inline(always)]
 pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
-    // Not `f32::max`, which handles NaN unlike the processor's instruction.
+    // Not `f32::max`, which handles NaN differently from the processor's instruction.
     if a > b { a } else { b }
 }
 

@@ -41,7 +41,7 @@ impl Turns {
 pub(super) struct Distances<'a> {
     known: Option<&'a Ready>,
     turns: Turns,
-    /// Least distances of approach, m.
+    /// Distances at the closest point of approach, m.
     pub(super) distances: Lanes<f32>,
 }
 
@@ -62,7 +62,7 @@ impl<'a> Distances<'a> {
         ready: &'a Ready,
         (north, east, speed): (&Lanes<f32>, &Lanes<f32>, &Lanes<f32>),
     ) {
-        // Functions of a group are stored consecutively, so only the last distances need caching.
+        // Functions of a group are stored consecutively, so only the last distances are cached.
         if self.known.is_some_and(|known| ready.group == known.group) {
             return;
         }
@@ -130,7 +130,7 @@ impl<'a> Bounded<'a> {
         if ready.seek { &self.least } else { &self.most }
     }
 
-    /// Forgets the last result, but not the turns, for another kind of bound.
+    /// Clears the last result, but not the turns, for a different kind of bound.
     #[inline(always)]
     pub(super) fn forget(&mut self) {
         self.group = None;
@@ -154,7 +154,7 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// Computes the turns unless cached. Returns whether there is anything to measure.
+    /// Computes the turns unless cached. Returns whether distances must be measured.
     #[inline(always)]
     fn turn(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) -> bool {
         if self.group.replace(ready.group) == Some(ready.group) {

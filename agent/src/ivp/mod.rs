@@ -13,9 +13,9 @@
 //! This is the method of Benjamin ("Interval Programming: A Multi-Objective Optimization Model for
 //! Autonomous Vehicle Control", Brown University 2002) and of Benjamin et al. ("An Overview of
 //! MOOS-IvP and a Users Guide to the IvP Helm", MIT CSAIL 2009). They tile the decision space with
-//! boxes, put a linear function on each, and search the tiles by branch and bound: exact for the
-//! tiles, approximate for the functions. Over course and speed alone the functions themselves are
-//! cheap, so [`Problem`] evaluates them, and its result is exact on the grid:
+//! boxes, fit a linear function to each, and search the tiles by branch and bound: exact for the
+//! tiles, approximate for the functions. With course and speed as the only variables, the functions
+//! themselves are cheap, so [`Problem`] evaluates them, and its result is exact on the grid:
 //!
 //! - functions of course only, of speed only, or sums of both, are added up in two lists;
 //! - the others are evaluated for tiles of four courses by four speeds. Tiles whose bound is below

@@ -9,11 +9,11 @@ use super::table::Table;
 
 /// A utility of 0 to 100 for each course and speed.
 ///
-/// Non-finite numbers count as no utility (a debug build panics). `Coupled` is almost free; the
+/// Non-finite numbers count as zero utility (a debug build panics). `Coupled` is almost free; the
 /// others are evaluated point by point.
 #[derive(Clone, Copy, Debug)]
 pub enum Objective<'a> {
-    /// A sum of course and speed.
+    /// The sum of a function of course and a function of speed.
     Coupled {
         /// Preference for the course.
         course: Peak,
@@ -68,7 +68,7 @@ impl Objective<'_> {
     /// The utility of course `k` at speed `j`, in the solver's arithmetic.
     ///
     /// # Panics
-    /// Beyond the grid, or with a table of another size.
+    /// Beyond the grid, or with a table of a different size.
     pub fn utility(&self, grid: &Grid, k: usize, j: usize) -> f32 {
         assert!(
             k < grid.courses() && j < grid.speeds(),
@@ -82,8 +82,8 @@ impl Objective<'_> {
             }) => {
                 let course = course.of_course(grid, k);
                 let speed = speed.of_speed(grid, j);
-                // For display: the search adds the two parts as integers, each with its own weight,
-                // as `contribution` does.
+                // For display only: the search adds the two parts as integers, each with its own
+                // weight, as in `contribution`.
                 (f64::from(course) * share + f64::from(speed) * (1.0 - share)) as f32
             }
             Parts::Field(field) => {
@@ -136,8 +136,8 @@ impl Objective<'_> {
             Objective::Table(table) => {
                 let found = (table.courses, table.speeds);
                 let size = (grid.courses(), grid.speeds());
-                // A bug of the caller, not a fault of a file: a table of another grid would be read
-                // beyond its end.
+                // A bug of the caller, not a fault in a file: a table of a different grid would be
+                // read beyond its end.
                 assert!(
                     found == size,
                     "table of {found:?} courses and speeds, expected {size:?}"
@@ -151,7 +151,7 @@ impl Objective<'_> {
 /// How a function is evaluated.
 pub(super) enum Parts<'a> {
     Separable(Separable<'a>),
-    /// A formula of both.
+    /// A formula in both.
     Field(Field),
     /// A table over both.
     Table(&'a Table),
@@ -182,7 +182,7 @@ pub(super) enum Field {
 }
 
 impl Field {
-    /// Utility of a course, a unit vector, at a speed, m/s.
+    /// Utility of a course (a unit vector) at a speed (m/s).
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         match self {
             Field::Closest(ready) => ready.utility(north, east, speed),

@@ -22,9 +22,9 @@ use super::lanes::LANES;
 pub struct Peak {
     /// Position of the summit, rad or m/s.
     pub summit: f64,
-    /// From the summit to the edge of the peak, on either side, rad or m/s.
+    /// Distance from the summit to the edge of the peak, on either side, rad or m/s.
     pub peak_width: f64,
-    /// From there to zero utility, rad or m/s.
+    /// Distance from that edge to zero utility, rad or m/s.
     pub base_width: f64,
     /// Utility drop from the summit to the edge of the peak, 0 to 100. No effect without a peak
     /// width.
@@ -56,7 +56,7 @@ impl Peak {
 
     /// The peak as a function of course, with course-independent values precomputed.
     pub(super) fn on_courses(&self, grid: &Grid) -> CoursePeak {
-        // Ticks make the angle between a summit and a course an integer, the same in a turned or
+        // In ticks the angle between a summit and a course is an integer, the same in a rotated or
         // mirrored scene. A non-finite summit must not count as north.
         let summit = if self.summit.is_finite() {
             grid.ticks_of(self.summit)
@@ -115,13 +115,13 @@ pub(super) struct CoursePeak {
 }
 
 impl CoursePeak {
-    /// Whether any of [`LANES`] courses from `first` on may have any utility.
+    /// Whether any of the [`LANES`] courses from `first` on may have any utility.
     pub(super) fn may_reach(&self, grid: &Grid, first: usize) -> bool {
         let middle = (first + LANES / 2).min(grid.courses() - 1);
         let from_middle = grid.ticks_between(self.summit, middle).abs() * self.tick_rad;
         let to_ends =
             grid.circle() / grid.courses() as f64 * self.tick_rad * (LANES / 2 + 1) as f64;
-        // Not for a summit that is not a number: the comparison is then false, as is every utility.
+        // False for a NaN summit, as the comparison is then false and every utility zero.
         from_middle - to_ends < self.peak.peak_width + self.peak.base_width.max(0.0)
     }
 
@@ -135,7 +135,7 @@ impl CoursePeak {
         self.peak.peak_width > 0.0
     }
 
-    /// The same for a peak known to have a width or none.
+    /// The same, given whether the peak has a width.
     #[inline(always)]
     pub(super) fn at_with(&self, grid: &Grid, k: usize, has_width: bool) -> f32 {
         let distance = grid.ticks_between(self.summit, k) * self.tick_rad;

@@ -21,9 +21,9 @@ pub struct Decision {
 /// Tie-breaker between equally good candidates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preference {
-    /// Own ship's present course, rad.
+    /// Own ship's current course, rad.
     pub course_rad: f64,
-    /// Own ship's present speed, m/s.
+    /// Own ship's current speed, m/s.
     pub speed_m_s: f64,
 }
 
@@ -34,17 +34,17 @@ pub struct Choice {
     pub decision: Decision,
     /// Its weighted sum: the largest on the grid.
     pub value: f64,
-    /// Number of points evaluated, some counted twice; the others could not win.
+    /// Number of points evaluated, some counted twice; no other point could win.
     pub evaluated: usize,
 }
 
-/// A grid and its cells: the same for all problems on equal grids, so that those of a large fleet
-/// stay in the processor's cache.
+/// A grid and its cells, shared by all problems on equal grids, so that those of a large fleet stay
+/// in the processor's cache.
 #[derive(Debug)]
 struct Layout {
     grid: Grid,
     cells: Cells,
-    /// For the next searches; as many as have run at once.
+    /// For later searches; as many as have run simultaneously.
     spare: Mutex<Vec<Bounds>>,
 }
 
@@ -67,7 +67,8 @@ impl Layout {
     }
 }
 
-/// The functions of one decision, prepared for summation. Its lists are reused for the next one.
+/// The functions of one decision, prepared for summation. The lists are reused for the next
+/// decision.
 #[derive(Clone, Debug)]
 pub struct Problem {
     layout: Arc<Layout>,
@@ -78,7 +79,7 @@ pub struct Problem {
     pub decides_course: bool,
     /// Whether any function distinguishes speeds.
     pub decides_speed: bool,
-    /// The last result, usually nearly as good at the next decision.
+    /// The last result, which is usually nearly as good at the next decision.
     found: Option<Decision>,
 }
 
@@ -88,7 +89,7 @@ impl Problem {
         Problem::with_instructions(grid, Instructions::best())
     }
 
-    /// A problem on this grid, without functions, for this instruction set, which affects only the
+    /// A problem on this grid, without functions, for this instruction set, which affects only
     /// speed.
     pub fn with_instructions(grid: Grid, instructions: Instructions) -> Problem {
         let layout = Layout::of(grid);
@@ -119,7 +120,7 @@ impl Problem {
     /// Adds a function with its priority weight, 0 to [`WEIGHT_MAX`](super::WEIGHT_MAX).
     ///
     /// # Panics
-    /// Beyond [`FUNCTIONS_MAX`] functions, or with a table of another size than the grid.
+    /// Beyond [`FUNCTIONS_MAX`] functions, or with a table whose size differs from the grid's.
     pub fn add(&mut self, weight: f64, objective: &Objective) {
         assert!(
             self.functions < FUNCTIONS_MAX,
@@ -127,8 +128,8 @@ impl Problem {
         );
         let weight = Weight::new(weight);
         self.functions += 1;
-        // Counted anyway: whether a helm has a preference does not depend on weights that
-        // happen to be zero.
+        // Count them anyway: whether a helm has a preference must not depend on weights that happen
+        // to be zero.
         if weight.is_zero() {
             return;
         }
@@ -150,8 +151,8 @@ impl Problem {
 
     /// The best decision, with exactly the largest weighted sum on the grid.
     ///
-    /// Ties go to the course with the smallest angle from the present one, then to starboard; on
-    /// that course to the speed nearest to the present one, then to the lower.
+    /// Ties go to the course with the smallest angle from the current one, then to starboard; on
+    /// that course, to the speed nearest to the current one, then to the lower speed.
     pub fn solve(&mut self, preference: Preference) -> Choice {
         let Layout { grid, cells, spare } = &*self.layout;
         let spare = || spare.lock().unwrap_or_else(PoisonError::into_inner);
@@ -166,8 +167,8 @@ impl Problem {
                 course: grid.ticks_of(preference.course_rad),
                 speed_m_s: preference.speed_m_s,
             },
-            // A good first guess lets most cells be skipped at once. It changes how many points are
-            // evaluated, but never the result.
+            // With a good first guess, most cells are skipped at once. The guess changes how many
+            // points are evaluated, but never the result.
             guess: self.found,
         };
         let (best, evaluated) = self.instructions.run(search);

@@ -1,5 +1,5 @@
-//! The search for the largest sum: sectors whose bound reaches the best point so far, then their
-//! tiles and points.
+//! The search for the largest sum: first the sectors whose bound reaches the best point so far,
+//! then their tiles and points.
 
 use super::cell::{Cells, CourseSpans, SpeedSpans, cell};
 use super::fixed::{FUNCTIONS_MAX, Weight};
@@ -23,7 +23,7 @@ pub(super) struct Best {
     pub(super) decision: Decision,
 }
 
-/// Own ship's present motion.
+/// Own ship's current motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Present {
     /// Its course, ticks.
@@ -31,7 +31,7 @@ pub(super) struct Present {
     pub(super) speed_m_s: f64,
 }
 
-/// Bounds of all cells during a search. Reused for the next one.
+/// Bounds of all cells during a search. Reused in the next search.
 #[derive(Clone, Debug)]
 pub(super) struct Bounds {
     /// By sector: the upper bounds of lists and tables in its tiles, in quanta.
@@ -41,7 +41,7 @@ pub(super) struct Bounds {
     /// By group of sectors and by formula: a bit for each sector in which the formula has full
     /// utility. Undefined for groups without a sector that reaches the best point so far.
     clear: Vec<u16>,
-    /// By formula: its upper bounds in the tiles of the present sector, in quanta.
+    /// By formula: its upper bounds in the tiles of the current sector, in quanta.
     parts: Vec<Lanes<i32>>,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Search<'a> {
     pub(super) sums: &'a Sums,
     pub(super) bounds: &'a mut Bounds,
     pub(super) present: Present,
-    /// A point that is probably good: its value excludes most others at once.
+    /// A point that is probably good: its value excludes most other points at once.
     pub(super) guess: Option<Decision>,
 }
 
@@ -85,7 +85,7 @@ impl Kernel for Search<'_> {
             },
         };
         let mut evaluated = 0;
-        // First, so that its value excludes most sectors after a few formulas.
+        // First, so that its value excludes most sectors after evaluating few formulas.
         let guess = self.guess;
         let guess = guess.map(|Decision { course, speed }| (course / SIDE, speed / SIDE));
         if let Some(tile) = guess {
@@ -114,7 +114,7 @@ impl Kernel for Search<'_> {
     }
 }
 
-/// Takes out the place of the largest number that reaches `least`.
+/// Removes the place of the largest number if that is at least `least`.
 #[inline(always)]
 fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
     let mut side_by_side = list[0];
@@ -124,8 +124,7 @@ fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
         }
     }
     let most = side_by_side.most();
-    // Cells with an equal sum stay: one may hold the point that is nearer to the boat's present
-    // motion.
+    // Cells with an equal sum stay: one may contain a point nearer to the boat's current motion.
     if most < least {
         return None;
     }
@@ -188,7 +187,7 @@ impl Search<'_> {
     fn tiles(&mut self, sector: usize, least: i32) -> Lanes<i32> {
         let courses = &self.cells.tile_courses[sector / self.cells.sector_speeds];
         let speeds = &self.cells.tile_speeds[sector % self.cells.sector_speeds];
-        // Taken out, so that the bounds of the sector can be read while these are written.
+        // Take them out, so that the sector's bounds can be read while these are written.
         let mut parts = std::mem::take(&mut self.bounds.parts);
         let clear = Search::clear(self.bounds, parts.len(), sector);
         let lists = self.bounds.lists[sector];
@@ -199,8 +198,8 @@ impl Search<'_> {
         tiles
     }
 
-    /// Evaluates a tile, by its place in the present sector if there is one. Keeps its best point if
-    /// that beats the best so far.
+    /// Evaluates a tile, by its place in the current sector, if any. Keeps its best point if that
+    /// beats the best so far.
     #[inline(always)]
     fn evaluate(
         &self,
@@ -223,8 +222,8 @@ impl Search<'_> {
             (parts, place, best.value),
         );
         let value = sums.most();
-        // Most tiles end here, after one comparison; only equal or better ones are checked point by
-        // point.
+        // Most tiles end here, after one comparison; only equal or better tiles are checked point
+        // by point.
         if value >= best.value {
             self.keep_best(&sums, value, (SIDE * course_tile, SIDE * speed_tile), best);
         }
@@ -250,7 +249,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether the first of two equal points wins.
+    /// Whether the first of two equally good points wins.
     fn is_nearer(&self, point: Decision, other: Decision) -> bool {
         let turn = |k: usize| {
             let ticks = self.grid.ticks_between(self.present.course, k) as i64;
@@ -280,7 +279,7 @@ impl Sums {
             tiles.0[i] = most_courses[i % SIDE] + most_speeds[i / SIDE];
         }
         if let Some(rows) = self.rows(across, along) {
-            // Unrolled: a loop over them would be vectorised in the wrong direction.
+            // Unrolled: the compiler would vectorise a loop in the wrong direction.
             let a = most_of_rows(rows, of_courses, of_speeds, 0);
             let b = most_of_rows(rows, of_courses, of_speeds, 1);
             let c = most_of_rows(rows, of_courses, of_speeds, 2);
@@ -293,15 +292,15 @@ impl Sums {
         }
         for i in 0..LANES {
             let is_there = most_courses[i % SIDE] >= 0 && most_speeds[i / SIDE] >= 0;
-            // Lanes beyond the grid have sums far below zero, but the functions' bounds could lift
-            // them, so they are marked again at the end.
+            // Lanes beyond the grid have sums far below zero, but the functions' bounds could raise
+            // them, so mark them again at the end.
             tiles.0[i] = if is_there { tiles.0[i] } else { DONE };
         }
         tiles
     }
 
-    /// Adds the formulas' bounds to the tiles' sums, and notes them. Formulas in `clear` add their
-    /// full utility. Stops when no tile can reach `least`.
+    /// Adds the formulas' bounds to the tiles' sums, and records them. Formulas in `clear` add
+    /// their full utility. Stops when no tile can reach `least`.
     #[inline(always)]
     fn add_bounds(
         &self,
@@ -365,11 +364,11 @@ impl Sums {
         if !reaches(&sums, 0, least) {
             return Lanes::splat(DONE);
         }
-        // A contact that stays far away in a whole sector adds its full weight there. Most contacts
-        // do, and their points need no distance.
+        // A contact that stays far away throughout a sector adds its full weight there. Most
+        // contacts do, and their points need no distance.
         bounded.forget();
         for ((_, field), clear) in self.fields.iter().zip(clear) {
-            // So far those in which it may: its greatest utility is full.
+            // So far, the sectors in which it may: its greatest utility is full.
             if let Field::Closest(ready) = field
                 && *clear != 0
             {
@@ -380,8 +379,8 @@ impl Sums {
         sums
     }
 
-    /// The weighted sums of a tile's points, in quanta. Stops when none can reach `least`, by the
-    /// formulas' bounds in this place.
+    /// The weighted sums of a tile's points, in quanta. Stops when, by the formulas' bounds at this
+    /// place, none can reach `least`.
     #[inline(always)]
     fn tile(
         &self,
@@ -434,8 +433,8 @@ impl Sums {
     }
 }
 
-/// Formulas with full utility throughout a sector: those that avoid a contact that does not come
-/// near on any path in it.
+/// Formulas with full utility throughout a sector: those that avoid a contact which comes near on
+/// no path in it.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
     /// By formula, a bit for each sector of the group.
@@ -490,8 +489,8 @@ fn add_closing_bounds(
     }
 }
 
-/// A bit for each cell of a group in which no distance falls below the limit, from the least
-/// distances, m.
+/// A bit for each cell of a group in which no distance falls below the limit, computed from the
+/// least distances (m).
 #[inline(always)]
 fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {
     let mut bits = 0_u32;

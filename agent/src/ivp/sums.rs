@@ -8,7 +8,7 @@ use super::peak::{CoursePeak, Peak};
 use super::table::Table;
 use primitives::instructions::{Instructions, Kernel};
 
-/// Weighted utilities, added up as far as possible before a point is known. Its lists are reused
+/// Weighted utilities, added up as far as possible before a point is known. The lists are reused
 /// for the next decision.
 #[derive(Clone, Debug)]
 pub(super) struct Sums {
@@ -23,7 +23,7 @@ pub(super) struct Sums {
     /// The sum of weighted tables, in quanta: for each group of speeds, a row of speeds per lane of
     /// `courses`. Undefined for groups of courses that no table lowers.
     table: Vec<Lanes<i32>>,
-    /// By group of courses: whether a table lowers any of them.
+    /// By group of courses: whether a table lowers any course in it.
     lowered: Vec<bool>,
 }
 
@@ -34,8 +34,8 @@ impl Sums {
         let courses = lists(grid.courses());
         let speeds = lists(grid.speeds());
         let lowered = vec![false; courses.len()];
-        // Programs have up to one table per obstacle and one formula per contact, so no list grows
-        // later.
+        // Programs have up to one table per obstacle and one formula per contact, so no list has to
+        // grow later.
         let mut sums = Sums {
             courses,
             speeds,
@@ -74,7 +74,7 @@ impl Sums {
             }),
             Parts::Field(field) => self.add_field(weight, field),
             Parts::Table(table) => {
-                // The first table allocates for all; later decisions allocate nothing.
+                // The first table allocates for all tables; later decisions allocate nothing.
                 self.table.resize(
                     self.speeds.len() * LANES * self.courses.len(),
                     Lanes::splat(0),
@@ -90,7 +90,7 @@ impl Sums {
         }
     }
 
-    /// Adds a formula after one with the same distances, if any, to reuse them.
+    /// Adds a formula, next to one with the same distances, if any, to reuse them.
     fn add_field(&mut self, weight: Weight, mut field: Field) {
         let mut place = self.fields.len();
         if let Field::Closest(ready) = &mut field {
@@ -99,8 +99,8 @@ impl Sums {
                 if let Field::Closest(other) = other
                     && ready.has_distances_of(other)
                 {
-                    // Next to those with the same distances: sums are of integers, so their order
-                    // is free.
+                    // Next to functions with the same distances: sums are of integers, so the order
+                    // does not matter.
                     (place, ready.group) = (i + 1, other.group);
                 }
             }
@@ -184,7 +184,7 @@ fn add_peak(
     }
 }
 
-/// A weighted peak, by speed, m/s.
+/// A weighted peak by speed (m/s).
 #[inline(always)]
 fn of_peak(weight: Weight, peak: &Peak, speed_m_s: &Lanes<f64>) -> Lanes<i32> {
     let mut quanta = Lanes::splat(0);
@@ -216,8 +216,8 @@ impl Kernel for AddTable<'_> {
             let first = LANES * across;
             let count = (grid.courses() - first).min(LANES);
             for (i, sum) in sums.courses[across].0.iter_mut().enumerate().take(count) {
-                // Courses that nothing lowers get 100 at all speeds, so most of 360 courses by 36
-                // speeds need no work. Skipping them took a game of `surveyor_2v2` from 1,220 to
+                // Courses that no table lowers get 100 at all speeds, so most of the 360 courses by
+                // 36 speeds need no work. Skipping them took a game of `surveyor_2v2` from 1,220 to
                 // 2,600 times real time.
                 *sum += if lowered >> i & 1 == 0 {
                     weight.quanta(100.0)
@@ -249,7 +249,7 @@ fn add_weighted(sum: &mut Lanes<i32>, weight: Weight, utilities: &Lanes<f32>) {
     }
 }
 
-/// Zeros in the first `count` lanes, and [`NOWHERE`] beyond them.
+/// Sets zeros in the first `count` lanes, and [`NOWHERE`] beyond them.
 fn clear_lanes(list: &mut [Lanes<i32>], count: usize) {
     list.fill(Lanes::splat(0));
     if !count.is_multiple_of(LANES) {

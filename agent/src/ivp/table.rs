@@ -3,14 +3,14 @@
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes};
 
-/// Utilities by course and speed, initially 100. Courses that stay at 100 cost nothing.
+/// Utilities by course and speed, initially 100. Courses still at 100 cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// The numbers of courses and speeds.
     pub(super) courses: usize,
     pub(super) speeds: usize,
-    /// By course: as many groups as hold all speeds. Undefined for courses that are not lowered,
-    /// and beyond the last speed.
+    /// By course: as many groups as are needed for all speeds. Undefined for courses that are not
+    /// lowered, and beyond the last speed.
     rows: Vec<Lanes<f32>>,
     /// By group of courses: a bit for each lowered one.
     pub(super) lowered: Vec<u16>,
@@ -45,21 +45,21 @@ impl Table {
         self.lowered.resize(self.courses.div_ceil(LANES), 0);
     }
 
-    /// The utilities of a course, for lowering: by speed, in groups.
+    /// The utilities of a course by speed, in groups, for lowering.
     #[inline(always)]
     pub(crate) fn lowered_mut(&mut self, k: usize) -> &mut [Lanes<f32>] {
         let lanes = self.lanes();
         let row = &mut self.rows[k * lanes..][..lanes];
         let lowered = &mut self.lowered[k / LANES];
         if *lowered >> (k % LANES) & 1 == 0 {
-            // Filled on first use, so that `clear` costs nothing per course.
+            // Fill them on first use, so that `clear` costs nothing per course.
             *lowered |= 1 << (k % LANES);
             row.fill(Lanes::splat(100.0));
         }
         row
     }
 
-    /// The utilities of a lowered course, by speed, in groups.
+    /// The utilities of a lowered course by speed, in groups.
     #[inline(always)]
     pub(super) fn row(&self, k: usize) -> &[Lanes<f32>] {
         &self.rows[k * self.lanes()..][..self.lanes()]
@@ -74,7 +74,7 @@ impl Table {
         }
     }
 
-    /// The number of groups that hold all speeds.
+    /// The number of groups needed for all speeds.
     fn lanes(&self) -> usize {
         self.speeds.div_ceil(LANES)
     }

@@ -1,5 +1,5 @@
-//! Own ship's response to a decision: it keeps its motion for its reaction time, turns the
-//! shorter way along an arc at its present speed, then goes straight, with limited acceleration.
+//! Own ship's response to a decision: it keeps its motion for its reaction time, turns the shorter
+//! way along an arc at its current speed, then moves straight, with limited acceleration.
 //!
 //! From the heading `h` to the course `d`, unit vectors with the angle `a` between them, a turn at
 //! the yaw rate `r` lasts `a / r`. At speed `u` it is an arc of radius `u / r`, whose chord ends at
@@ -8,7 +8,8 @@
 //! (u / r) |d - h| (h + d) / |h + d|           a = 2 asin(x) = 2 x (1 + x^2 / 6 + 0.36 x^8), within 6 %, x = |d - h| / 2
 //! ```
 //!
-//! To the course straight back both directions are equally short, and the arc ends on either side.
+//! For a course straight back, both directions are equally short, and the arc may end on either
+//! side.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
@@ -20,9 +21,9 @@ pub(super) type Vector = (f32, f32);
 /// Own ship's delay in following a decision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
-    /// Own ship's present velocity, m/s.
+    /// Own ship's current velocity, m/s.
     pub velocity: Ned,
-    /// Present heading, as a unit vector.
+    /// Current heading, as a unit vector.
     pub heading: Ned,
     /// Time until a decision takes effect, s.
     pub reaction_s: f64,
@@ -39,8 +40,8 @@ pub struct Lag {
 const ANGLE_OF_CHORD: f64 = 1.15;
 
 impl Lag {
-    /// Time until own ship is on a course, a unit vector, if it keeps its motion for half of
-    /// its turn, s.
+    /// Time until own ship is on a course (a unit vector) if it keeps its motion for half of its
+    /// turn, s.
     #[inline(always)]
     pub fn duration_s(&self, course: Ned) -> f64 {
         let chord = (course - self.heading).length();
@@ -51,7 +52,7 @@ impl Lag {
         self.velocity.dot(self.heading).max(0.0)
     }
 
-    /// Whether all numbers are valid for computing.
+    /// Whether all numbers are valid for the computation.
     pub(super) fn is_sound(&self) -> bool {
         let rates = [
             self.turn_rad_s,
@@ -71,13 +72,13 @@ impl Lag {
             && rates.iter().all(|rate| sound(rate) && *rate > 1e-4)
     }
 
-    /// The longest time until own ship is on its course, s.
+    /// Maximum time until own ship is on its course, s.
     pub(super) fn most_s(&self) -> f64 {
         self.reaction_s + std::f64::consts::PI / self.turn_rad_s
     }
 }
 
-/// Maximum error of an angle in single precision, where its cosine is near 1, rad.
+/// Maximum single-precision error of an angle whose cosine is near 1, rad.
 const ROUNDING_RAD: f32 = 1e-3;
 
 /// Own ship's turn in single precision, the same for all contacts.
@@ -102,14 +103,14 @@ pub(super) struct Turn {
 pub(super) struct Fan {
     pub(super) first: Turn,
     pub(super) last: Turn,
-    /// Maximum distance of any of their end points from the straight line between these two, m.
+    /// Maximum distance of any of the end points from the straight line between these two, m.
     pub(super) off: f32,
-    /// Maximum deviation of its duration from the corresponding mean of theirs, s.
+    /// Maximum deviation of a duration from the corresponding mean of these two, s.
     pub(super) off_s: f32,
 }
 
 impl Turning {
-    /// For a ship that follows decisions at once.
+    /// A ship that follows decisions at once.
     const NONE: Turning = Turning {
         heading: (1.0, 0.0),
         s_per_rad: 0.0,
@@ -126,7 +127,7 @@ impl Turning {
         })
     }
 
-    /// The turn to a course, a unit vector.
+    /// The turn to a course (a unit vector).
     #[inline(always)]
     pub(super) fn to(&self, (north, east): Vector) -> Turn {
         let cosine = self.heading.0 * north + self.heading.1 * east;
@@ -147,7 +148,7 @@ impl Turning {
 
     /// Turns onto the courses of a cell.
     ///
-    /// With the course, their end points move at the rate of the radius, in a direction that
+    /// As the course changes, their end points move at the rate of the radius, in a direction that
     /// rotates with the course. Their durations change at a rate that varies by less than 2.4. A
     /// value between two of them deviates from the straight line by at most half of that times the
     /// square of half the cell's angle. At the bow both rates change sign, and opposite to it the
@@ -162,9 +163,9 @@ impl Turning {
         let cosine = self.heading.0 * cell.north + self.heading.1 * cell.east;
         let within = 1.0 - larger(cosine, -cosine)
             < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
-        // Between two courses on either side of the bow the arcs bend to both sides, and near
-        // straight back they end far apart. The four corners do not enclose them there, so the
-        // bound is widened by the largest deviation.
+        // For courses on either side of the bow the arcs bend to both sides, and near straight back
+        // they end far apart. The four corners do not enclose them there, so the bound is widened
+        // by the largest deviation.
         let at_bow = within & (cosine > 0.0);
         let at_back = within & (cosine <= 0.0);
         off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
@@ -179,14 +180,13 @@ impl Turning {
     }
 }
 
-/// Own ship's mean speed on its straight run until it meets a contact, with limited
-/// acceleration.
+/// Own ship's mean speed on its straight run until it meets a contact, with limited acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MeanSpeed {
     ahead: f32,
-    /// The largest gain until then, m/s, and its reciprocal.
+    /// The maximum gain until then (m/s), and its reciprocal.
     gain: (f32, f32),
-    /// The same for the largest loss.
+    /// The same for the maximum loss.
     loss: (f32, f32),
 }
 
@@ -211,13 +211,12 @@ impl MeanSpeed {
         })
     }
 
-    /// The mean speed for an ordered one. If the change takes the fraction `y` of the time, the
-    /// mean change is `y
-    /// - y^2 / 2` of the largest possible.
+    /// The mean speed for an ordered speed. If the change takes the fraction `y` of the time, the
+    /// mean change is `y - y^2 / 2` of the largest possible.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
-        // Both are computed before the choice: a choice between numbers in memory becomes a gather,
-        // which took a third of a search.
+        // Compute both before choosing: a choice between numbers in memory becomes a gather, which
+        // took a third of a search.
         let (gain, per_gain) = self.gain;
         let (loss, per_loss) = self.loss;
         let off = speed - self.ahead;

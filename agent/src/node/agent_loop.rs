@@ -1,5 +1,5 @@
 //! The loop of an agent process: receives pictures, lets its minds decide, and sends orders and
-//! messages to mates.
+//! messages to teammates.
 
 use super::error::NodeError;
 use super::helm_queries::HelmQueries;
@@ -19,10 +19,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often an agent without incoming pictures checks whether the sim is alive.
+/// Interval at which an agent without incoming pictures checks whether the sim is alive.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// In lockstep, messages of mates arrive before the picture unless hubs on the way reorder them or
-/// a link was cut. The agent waits this long for them, once.
+/// In lockstep, teammates' messages arrive before the picture unless hubs on the way reorder them
+/// or a link failed. The agent waits this long for them, once.
 const MESSAGES_LATE: Duration = Duration::from_millis(500);
 /// Maximum number of pictures per team queued while the minds decide.
 const UNREAD_MAX: usize = 64;
@@ -35,10 +35,10 @@ pub(super) struct AgentLoop {
     talk: Talk,
     policies: PolicyInbox,
     /// Opened after joining: an agent that is waiting for a boat must not answer for the agent that
-    /// has it.
+    /// currently has it.
     helm_queries: Option<HelmQueries>,
     orders: Publisher,
-    /// The pictures of each team, oldest first, that the minds have not seen.
+    /// The pictures of each team that the minds have not seen, oldest first.
     unread: Arc<Latest<Vec<Vec<u8>>>>,
     sim: SimWatch,
     /// The teams of this agent's boats, whose pictures it receives.
@@ -70,8 +70,8 @@ impl AgentLoop {
             Some(minds) => minds(scenario, &known),
             None => minds_for(scenario, known, None),
         });
-        // The sim waits `patience_s` before it drops an agent. Waits for mates use at most half of
-        // it, so that a late mate cannot cost this agent the game.
+        // The sim waits `patience_s` before it drops an agent. Waiting for teammates takes at most
+        // half of this, so that a late one cannot cost this agent the game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
         let delivery = Delivery::per_decision(is_lockstep);
@@ -122,7 +122,7 @@ impl AgentLoop {
         scenario: &Scenario,
         joined: Joined,
     ) -> Result<(), NodeError> {
-        // Orders name the vehicle: with boats other than the requested ones, the minds would steer
+        // Orders name the vehicle: with boats other than those requested, the minds would steer
         // boats that they do not know.
         if !self
             .runner
@@ -139,12 +139,12 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// The boats whose program had faults.
+    /// The boats whose programs had faults.
     pub(super) fn faults(&self) -> impl Iterator<Item = (VehicleId, String, u64)> {
         self.runner.faults()
     }
 
-    /// All rejected messages so far, and expected ones that never arrived.
+    /// The counts of messages rejected so far, and of expected messages that never arrived.
     pub(super) fn refusals(&self) -> Refusals {
         self.refusals + self.talk.refusals() + self.policies.refusals()
     }
@@ -163,13 +163,13 @@ impl AgentLoop {
                 {
                     return Ok(());
                 }
-                // Only the newest picture: a queue would make a slow agent work on outdated ones.
-                // Events of skipped pictures carry over to the next.
+                // Use only the newest picture: with a queue, a slow agent would work on outdated
+                // ones. Events of skipped pictures carry over to the next one.
                 decided |= self.decide()?;
             }
             if let Some(queries) = &mut self.helm_queries {
-                // After the orders are sent: inspection slows a lockstep game down but changes none
-                // of its decisions.
+                // After the orders have been sent: inspection slows down a lockstep game but
+                // changes none of its decisions.
                 queries.answer(&mut self.runner, decided);
             }
             match self.sim.state() {
@@ -190,7 +190,7 @@ impl AgentLoop {
                     theirs: e.to_string(),
                 });
             }
-            // Damaged in transit; the sim sends it again.
+            // Damaged in transit; the sim will send it again.
             Err(_) => return Ok(()),
         };
         self.refusals
@@ -200,7 +200,7 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// Decides when the pictures of all teams have the same tick. Answers a repeated tick with the
+    /// Decides once the pictures of all teams have the same tick. Answers a repeated tick with the
     /// same orders. Returns whether the minds have decided.
     fn decide(&mut self) -> Result<bool, NodeError> {
         let stamp_of = |team: &TeamId| {
@@ -211,8 +211,8 @@ impl AgentLoop {
         let Some(stamp) = self.teams.first().and_then(stamp_of) else {
             return Ok(false);
         };
-        // Boats of several teams decide on the same tick: with pictures of different ticks the
-        // result would depend on their order of arrival.
+        // Boats of several teams decide on the same tick: with pictures of different ticks, the
+        // result would depend on the order of arrival.
         if self.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
             return Ok(false);
         }
@@ -228,8 +228,8 @@ impl AgentLoop {
             });
             self.talk.publish_words(self.runner.sent(), stamp);
         }
-        // Messages to mates before orders: the sim advances once it has the orders, and then the
-        // messages are already in transit.
+        // Messages to teammates before orders: the sim advances once it has the orders, and by then
+        // the messages are in transit.
         self.talk.send()?;
         if let Some(orders) = self.runner.answer(self.ticket) {
             self.orders.send(&orders)?;
@@ -238,8 +238,8 @@ impl AgentLoop {
     }
 }
 
-/// A picture with the events of the previous one added if that one led to no decision.
-/// `decided` is the number of the last decision. Each event is in one picture only.
+/// A picture, with the events of the previous one added if that led to no decision. `decided` is
+/// the number of the last decision. Each event is in only one picture.
 fn with_missed_events(
     mut picture: Picture,
     before: Option<Picture>,

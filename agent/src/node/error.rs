@@ -11,22 +11,22 @@ pub enum NodeError {
     /// The network failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// No sim found within the allowed time.
+    /// No sim was found within the allowed time.
     #[error("found no game to join within {0:.0?}: {1}")]
     NoGame(Duration, String),
     /// The sim rejected the request.
     #[error("refused by the sim: {0}")]
     Refused(String),
-    /// The sim has another version.
+    /// The sim has a different version.
     #[error("agent and sim have different versions: the agent is {ours}, {theirs}", ours = primitives::VERSION)]
     Version {
-        /// The sim's version, as far as known.
+        /// The sim's version, if known.
         theirs: String,
     },
-    /// No picture from the sim for this long.
+    /// No picture has arrived from the sim for this long.
     #[error("lost the sim: no picture for {0:.1?}")]
     SimGone(Duration),
-    /// Another sim now serves a game of the same name and does not know this agent.
+    /// A different sim now serves a game with the same name, and does not know this agent.
     #[error("lost the sim, and another one now serves the game: join again")]
     SimReplaced,
 }

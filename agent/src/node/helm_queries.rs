@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 
 /// Capacity of the query queue.
 const INBOX: usize = 32;
-/// How long a mind keeps its utilities after the last query that requested them.
+/// How long a mind keeps utilities after the last query that requested them.
 const LOOKED_AT: Duration = Duration::from_secs(5);
-/// A query before the first kept decision waits this long for one. A paused game makes no
-/// decisions, and the page waits at most a second.
+/// How long a query before the first kept decision waits for one. A paused game makes no decisions,
+/// and the page waits at most a second.
 const NEXT_DECISION: Duration = Duration::from_millis(500);
 /// Maximum number of answers between picture polls: a flood of queries must not keep a boat from
 /// deciding.
@@ -61,7 +61,8 @@ impl HelmQueries {
         })
     }
 
-    /// Answers pending queries. `decided` is whether the minds have decided since the last call.
+    /// Answers pending queries. `decided` states whether the minds have decided since the last
+    /// call.
     pub(super) fn answer(&mut self, runner: &mut MindRunner, decided: bool) {
         let waiting = std::mem::take(&mut self.waiting);
         for asked in waiting {
@@ -94,7 +95,7 @@ impl HelmQueries {
             at: clock::now(),
         };
         if !wants.functions {
-            // Modes and weights need no inspection, so a list of boats costs a helm nothing.
+            // Modes and weights need no inspection, so listing boats costs a helm nothing.
             return reply(runner, asked);
         }
         match self

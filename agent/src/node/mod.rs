@@ -1,7 +1,7 @@
 //! An agent on the network: finds a game, joins it, and decides for its vehicles until the game is
 //! over.
 //!
-//! Everything except the vehicles' names comes from the sim: field, rules, strategies, seed.
+//! Everything except the vehicles' names comes from the sim: field, rules, strategies and seed.
 
 mod agent_loop;
 mod error;
@@ -20,7 +20,7 @@ use messages::Role;
 use messages::refusal::Refusals;
 use primitives::VehicleId;
 
-/// What an agent reports to the program that runs it.
+/// An event that an agent reports to the program that runs it.
 pub enum News<'a> {
     /// No sim found yet.
     Looking {
@@ -34,9 +34,9 @@ pub enum News<'a> {
     },
     /// The game is over, or the agent has left it.
     Left {
-        /// Counts of rejected messages, and of expected ones that never arrived.
+        /// Counts of rejected messages, and of expected messages that never arrived.
         refused: Refusals,
-        /// The boats whose program had faults, each with the first and their number.
+        /// The boats whose programs had faults, each with the first fault and the number of faults.
         faults: Vec<(String, String, u64)>,
     },
 }
@@ -68,8 +68,8 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         refused: agent.refusals(),
         faults: agent.faults().map(name).collect(),
     });
-    // Closing the link tells the sim at once that the agent has left; its boats hold from the next
-    // decision on.
+    // Closing the link tells the sim at once that the agent has left; then its boats hold from the
+    // next decision on.
     bus.close();
     played
 }

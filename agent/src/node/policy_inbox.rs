@@ -17,7 +17,7 @@ use std::time::Duration;
 #[derive(Clone, Debug)]
 struct Boat {
     vehicle: VehicleId,
-    /// Whether decisions wait for this boat's proposal; never for a person's.
+    /// Whether decisions wait for this boat's proposal; never for a proposal from a person.
     is_awaited: bool,
     newest: Option<PolicyProposal>,
 }
@@ -32,7 +32,7 @@ struct Proposals {
 /// The proposals for the boats whose strategy uses them.
 pub(super) struct PolicyInbox {
     proposals: Arc<Watched<Proposals>>,
-    /// Maximum wait for the proposal to a decision.
+    /// Maximum wait for the proposal for a decision.
     patience: Duration,
     is_wanted: bool,
     _declarations: Vec<Declaration>,
@@ -81,8 +81,8 @@ impl PolicyInbox {
             return;
         }
         let is_complete =
-            // Real-time games do not wait for policies. In lockstep, the game would otherwise
-            // depend on process speed.
+            // Real-time games do not wait for policies. In lockstep, without waiting, the game
+            // would depend on the speed of processes.
             self.patience.is_zero() || self.proposals.wait(self.patience, |proposals| proposals.is_for(stamp.seq));
         self.proposals.visit(|proposals| {
             proposals
@@ -106,7 +106,7 @@ impl Proposals {
         let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else {
             return;
         };
-        // Access control is by key, so a message whose vehicle contradicts its key is rejected.
+        // Access control works by key, so reject a message whose vehicle contradicts its key.
         if proposal.vehicle != self.boats[i].vehicle {
             self.refusals.count(Refusal::NotYours);
         } else if !is_sound(&proposal) {
@@ -125,7 +125,7 @@ impl Proposals {
     }
 }
 
-/// Whether its values are finite and its time is within the game.
+/// Whether the values are finite and the time is within the game.
 fn is_sound(proposal: &PolicyProposal) -> bool {
     proposal.course_rad.is_finite()
         && proposal.speed_m_s.is_finite()

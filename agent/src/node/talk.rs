@@ -1,4 +1,4 @@
-//! Team messages over the network: to and from mates in other processes.
+//! Team messages over the network: to and from teammates in other processes.
 
 use super::error::NodeError;
 use super::team_inbox::TeamInbox;
@@ -16,11 +16,11 @@ use std::time::Duration;
 struct Outgoing {
     team: TeamId,
     publisher: Publisher,
-    /// The last message, kept for repeating together with repeated orders.
+    /// The last message, kept to be repeated with repeated orders.
     last: Option<Say>,
 }
 
-/// The messages of all teams with a talking mind here.
+/// The messages of the teams for which a mind in this process sends messages.
 pub(super) struct Talk {
     outgoing: Vec<Outgoing>,
     team_inbox: Arc<Watched<TeamInbox>>,
@@ -32,7 +32,8 @@ pub(super) struct Talk {
 }
 
 impl Talk {
-    /// Prepares publishers for each team with a talking mind here, and subscribes to its mates.
+    /// Prepares a publisher for each team with a mind that sends messages, and subscribes to
+    /// teammates.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -51,8 +52,8 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        // By the scenario's strategies: if a mate follows another one (`--strategy`), the agent
-        // waits for its messages at most once.
+        // Taken from the scenario's strategies. If a teammate runs a different one (`--strategy`),
+        // the agent waits at most once for messages that never come.
         let talks = |vehicle| {
             roles::role_of(scenario, vehicle)
                 .variables
@@ -71,8 +72,8 @@ impl Talk {
             let take =
                 move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));
             // From agent to agent, past the sim's loop, because the sim neither needs nor checks
-            // these messages. As part of orders they would slow lockstep for all, and on the water
-            // no sim can relay them.
+            // these messages. As part of orders they would slow down lockstep for everyone, and on
+            // the water no sim can relay them.
             declarations.push(bus.subscribe_remote(topic::say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team), Priority::Normal)?;
             outgoing.push(Outgoing {
@@ -91,12 +92,14 @@ impl Talk {
         })
     }
 
-    /// Passes to the minds what mates elsewhere sent after the previous decision.
+    /// Passes on to the minds the messages that teammates elsewhere sent after the previous
+    /// decision.
     pub(super) fn hear(&mut self, runner: &mut MindRunner, seq: u64) {
         if self.outgoing.is_empty() {
             return;
         }
-        // Real-time games neither wait nor count: mates decide at their own times.
+        // In real time, the agent neither waits for messages nor counts missing ones: each teammate
+        // decides at its own time.
         let waits = !self.patience.is_zero();
         if waits {
             self.team_inbox
@@ -112,13 +115,13 @@ impl Talk {
         runner.receive(&self.words);
     }
 
-    /// Collects the minds' messages after a decision, to send them to mates elsewhere.
+    /// Collects the minds' messages after a decision, to send to teammates elsewhere.
     pub(super) fn publish_words(&mut self, said: &[Word], stamp: Stamp) {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
-            // Kept, because a repeated picture is answered with the same messages, so that lost
-            // ones are sent again.
+            // Keep them, because a repeated picture is answered with the same messages, so that
+            // lost messages are sent again.
             to.last = (!words.is_empty()).then_some(Say {
                 stamp: Stamp {
                     version: Say::VERSION,

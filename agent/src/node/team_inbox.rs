@@ -1,8 +1,8 @@
-//! Messages from mates in other processes, kept until the decision at which they are delivered.
+//! Messages from teammates in other processes, kept until the decision at which they are delivered.
 //!
-//! No network and no clock here. Messages that a mate sends after decision `k` are delivered at
-//! decision `k + 1`, not earlier. A faster mate may already have sent its messages of `k + 1`, so
-//! the last two are kept.
+//! This module uses neither network nor clock. Messages that a teammate sends after decision `k`
+//! are delivered at decision `k + 1`, not earlier. A faster teammate may already have sent its
+//! messages of `k + 1`, so the last two are kept.
 
 use messages::refusal::{Refusal, Refusals};
 use messages::{Say, Word};
@@ -20,7 +20,7 @@ struct Sent {
 #[derive(Clone, Debug)]
 struct Sender {
     team: TeamId,
-    /// Whether another process runs it.
+    /// Whether a different process runs it.
     is_mate: bool,
     /// Whether its strategy sends messages at all.
     talks: bool,
@@ -42,8 +42,8 @@ pub struct TeamInbox {
 }
 
 impl TeamInbox {
-    /// An inbox for boats by vehicle index, each with its team and whether it talks. `own` lists
-    /// the boats of this process.
+    /// An inbox for boats by vehicle index, each with its team and whether it sends messages. `own`
+    /// lists the boats of this process.
     pub fn new(boats: impl Iterator<Item = (TeamId, bool)>, own: &[VehicleId]) -> TeamInbox {
         let sender = |(i, (team, talks))| {
             let is_mate = !own.contains(&VehicleId::at(i));
@@ -70,7 +70,7 @@ impl TeamInbox {
             return;
         };
         for word in say.words {
-            // Messages identify boats, not processes: the name stays when another process takes
+            // Messages identify boats, not processes: the name stays when a different process takes
             // over a boat.
             let sender = self.senders.get_mut(word.vehicle.index());
             let Some(sender) = sender.filter(|sender| sender.is_mate && sender.team == team) else {
@@ -88,9 +88,9 @@ impl TeamInbox {
         }
     }
 
-    /// Whether all messages due at decision `seq` have arrived. Mates that sent after the decision
-    /// before the last are expected to send after the last one too; talking mates are expected to
-    /// send after the first.
+    /// Whether all messages due at decision `seq` have arrived. Teammates that sent after the
+    /// decision before last are expected to send after the last one, too; all that send messages
+    /// are expected to send after the first.
     pub fn is_complete(&self, seq: u64) -> bool {
         !self
             .senders
@@ -112,7 +112,7 @@ impl TeamInbox {
                 None => sender.before.take_if(|sent| sent.seq < seq),
             };
             let on_time = sent.as_ref().is_some_and(|sent| sent.seq + 1 == seq);
-            // Counted, and the previous values stay: a boat continues with the last ones it
+            // Count it and keep the previous values: a boat continues with the last ones it
             // received.
             missed += u64::from(awaited && !on_time);
             if !self.has_begun && sender.talks {
@@ -132,7 +132,7 @@ impl Sender {
     /// Stores a word sent after decision `seq`, if there is space.
     fn note(&mut self, seq: u64, word: Word) -> bool {
         let Some(newest) = self.newest.as_mut().filter(|newest| newest.seq == seq) else {
-            // By arrival, not by stamp: a wrong stamp displaces at most one message.
+            // In order of arrival, not by stamp: a wrong stamp displaces at most one message.
             self.before = self.newest.replace(Sent {
                 seq,
                 words: vec![word],
@@ -148,12 +148,12 @@ impl Sender {
         true
     }
 
-    /// Whether a message from it is due at decision `seq`.
+    /// Whether a message from the boat is due at decision `seq`.
     fn is_awaited(&self, seq: u64) -> bool {
         self.awaited_at == Some(seq)
     }
 
-    /// Whether its message for decision `seq` has arrived or can no longer arrive.
+    /// Whether the boat's message for decision `seq` has arrived or can no longer arrive.
     fn is_past(&self, seq: u64) -> bool {
         [&self.newest, &self.before]
             .into_iter()
@@ -170,7 +170,7 @@ mod tests {
 
     const BLUE: TeamId = TeamId(0);
 
-    /// Two teams of two boats that may or may not talk; the first boat belongs to this process.
+    /// Two teams of two boats, with or without messages; the first boat belongs to this process.
     fn team_inbox() -> TeamInbox {
         TeamInbox::new(
             [0, 0, 1, 1].into_iter().map(|team| (TeamId(team), false)),
@@ -322,7 +322,7 @@ mod tests {
         );
         assert_eq!(inbox.refusals.of(Refusal::Surplus), 300 - SHARED_MAX as u64);
         assert_eq!(delivered(&mut inbox, 1).len(), SHARED_MAX);
-        // The number of a decision that never happens hides earlier messages, but not for long.
+        // The number of a decision that never happened hides earlier messages, but not for long.
         receive(&mut inbox, &say(u64::MAX, &[(1, 1.0)]));
         assert!(inbox.is_complete(u64::MAX));
         assert!(inbox.is_complete(3), "it is beyond the awaited decision");

@@ -12,8 +12,7 @@ impl<'a> Numbers<'a> {
 
     /// Writes the next number.
     pub(super) fn push(&mut self, number: f64) {
-        // Spaces report their size to trainers before anything is written, so a mismatch is our
-        // bug.
+        // Spaces report their size to trainers before values are written, so a mismatch is a bug.
         *self.0.next().expect("the slice has space for every number") = number as f32;
     }
 
@@ -22,7 +21,7 @@ impl<'a> Numbers<'a> {
         numbers.into_iter().for_each(|number| self.push(number));
     }
 
-    /// Writes 1 for true, 0 for false.
+    /// Writes 1 for true or 0 for false.
     pub(super) fn flag(&mut self, is: bool) {
         self.push(f64::from(u8::from(is)));
     }

@@ -5,11 +5,11 @@
 //! For the boat itself: the enemies' flag, its own flag, the walls to starboard, behind, to port
 //! and ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side,
 //! time since its last tag, tagged, out of action (2026), both scores (not 2023). Then for each
-//! other boat, mates first: bearing, distance, heading relative to the line to this boat, speed,
-//! carrying, own side, time since its last tag, tagged, out of action (2026).
+//! other boat, teammates first: bearing, distance, heading relative to the line to this boat,
+//! speed, carrying, own side, time since its last tag, tagged, out of action (2026).
 //!
-//! Pyquaticus provides the truth; this space provides the boat's knowledge. All values of an
-//! unknown boat are 0. An enemy's last tag time is known if it tagged a boat of the team.
+//! Pyquaticus provides the true values; this space provides those that the boat knows. All values
+//! of an unknown boat are 0. An enemy's last tag time is known if it tagged a boat of the team.
 
 use super::numbers::Numbers;
 use crate::situation::{OtherBoat, Situation};
@@ -110,7 +110,7 @@ fn other_boat(situation: &Situation, other: &OtherBoat, edition: Edition, out: &
     }
 }
 
-/// The distance that counts as 1, m.
+/// The distance that is scaled to 1, m.
 fn longest_m(situation: &Situation, edition: Edition) -> f64 {
     let plan = &situation.model.field.plan;
     let beyond_m = if edition == Edition::Of2023 {
@@ -121,7 +121,7 @@ fn longest_m(situation: &Situation, edition: Edition) -> f64 {
     primitives::math::length(plan.width_m, plan.depth_m) + beyond_m
 }
 
-/// Bearing and distance of a place.
+/// Bearing and distance to a place.
 fn toward(
     situation: &Situation,
     place: Ned,
@@ -133,7 +133,7 @@ fn toward(
 }
 
 /// Whether a boat was on a team's side of the scrimmage line a tick ago, on the field or not:
-/// Pyquaticus tests this before a boat moves, and unlike `Field::is_own_side`.
+/// Pyquaticus tests this before a boat moves, and not like `Field::is_own_side`.
 fn is_own_side(situation: &Situation, (at, velocity): (Ned, Ned), team: usize) -> bool {
     let field = &situation.model.field;
     let before = at - velocity.scaled(situation.model.tick_s);
@@ -152,7 +152,7 @@ fn nearest_of((a, b): (Ned, Ned), at: Ned) -> Ned {
     a + line.scaled(((at - a).dot(line) / line.dot(line)).clamp(0.0, 1.0))
 }
 
-/// The time since the last tag, s, limited to the cooldown.
+/// The time since the last tag, limited to the cooldown, s.
 fn since_tag(situation: &Situation, edition: Edition, ready: SimTime) -> f64 {
     let cooldown_s = situation.model.rules.tag_cooldown.as_s();
     let wait_s = tag_wait_s(ready, situation.now).min(cooldown_s);
@@ -169,7 +169,7 @@ fn fastest_m_s(situation: &Situation) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Maps 0 to `most` onto -1 to 1, which values beyond exceed in 2023.
+/// Maps 0 to `most` onto -1 to 1; in 2023, larger values exceed this range.
 fn unit(edition: Edition, number: f64, most: f64) -> f64 {
     let scaled = 2.0 * number / most - 1.0;
     match edition {

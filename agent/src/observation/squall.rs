@@ -2,8 +2,8 @@
 //! the same for both teams.
 //!
 //! Places on the field are relative to its centre: ahead, as the team faces the enemies' end, and
-//! to port. Other boats and goals are along the boat's axes. Lengths are in hundreds of metres,
-//! each with its nearness: 10 m divided by 10 m plus the distance. Speeds are in units of 3 m/s;
+//! to port. Other boats and goals are expressed in the boat's own axes. Lengths are in hundreds of
+//! metres, each paired with a nearness, 10 m / (10 m + distance). Speeds are in units of 3 m/s;
 //! booleans are 0 or 1.
 
 use super::numbers::Numbers;
@@ -16,9 +16,9 @@ use scenario::strategy::{Fact, Mark, Place, Values};
 
 /// Unit of lengths, m.
 const LENGTH_M: f64 = 100.0;
-/// Lengths are clamped to this many units.
+/// Maximum length in these units; longer ones are clamped.
 const LENGTHS_MAX: f64 = 3.0;
-/// Distance of nearness 0.5, m: the tag radius of the Aquaticus rules.
+/// Distance with a nearness of 0.5, m: the tag radius of the Aquaticus rules.
 const NEAR_M: f64 = 10.0;
 /// Unit of speeds, m/s: a Surveyor's top speed.
 const SPEED_M_S: f64 = 3.0;
@@ -26,7 +26,7 @@ const SPEED_M_S: f64 = 3.0;
 const YAW_RATE_RAD_S: f64 = 0.5;
 /// Unit of ages, s.
 const AGE_S: f64 = 10.0;
-/// Edges and obstacles beyond this distance make no difference, m.
+/// Distance beyond which edges and obstacles make no difference, m.
 const FAR_M: f64 = 20.0;
 const POINTS: f64 = 10.0;
 
@@ -48,13 +48,13 @@ pub(super) fn write(
     slots(situation, others(false), mates, out);
     let mut nearest: Vec<&OtherBoat> = others(true).collect();
     let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
-    // Enemies by distance: their order has no meaning for a policy, and with fewer slots than
-    // enemies the relevant ones are kept. Mates keep their slots.
+    // Sorted by distance: the scenario's order means nothing to a policy, and if there are fewer
+    // slots than enemies, the nearest are kept. Teammates keep their slots.
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     slots(situation, nearest.into_iter(), enemies, out);
 }
 
-/// Unit vectors ahead of the team and to its port.
+/// Unit vectors in the team's forward and port directions.
 fn team_axes(situation: &Situation) -> (Ned, Ned) {
     let field = &situation.model.field;
     let sign = if situation.model.team.index() == 0 {
@@ -85,7 +85,7 @@ fn own_boat(situation: &Situation, out: &mut Numbers<'_>) {
     out.flag(Ability::from(&situation.own).may_tag(situation.now));
 }
 
-/// 6 values: nearness of the four edges, direction of the nearest obstacle.
+/// 6 values: nearness of the four edges and of the nearest obstacle, and speed.
 fn edges(situation: &Situation, out: &mut Numbers<'_>) {
     let (forward, port) = team_axes(situation);
     let plan = &situation.model.field.plan;
@@ -103,8 +103,8 @@ fn edges(situation: &Situation, out: &mut Numbers<'_>) {
     out.push((situation.own.nav.speed_m_s() / situation.model.speed_max_m_s.max(0.1)).min(2.0));
 }
 
-/// 16 values: the enemies' flag, the team's own flag, the place for capturing or untagging, and the
-/// current goal among them.
+/// 16 values: the enemies' flag, the team's own flag, the place for capturing or untagging, and
+/// whichever of these is the current goal.
 fn goals(situation: &Situation, out: &mut Numbers<'_>) {
     let at = |mark| {
         situation
@@ -160,7 +160,7 @@ fn slots<'a>(
     out.skip(empty * OTHER);
 }
 
-/// 16 values.
+/// 16 values for one boat.
 fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.flag(true);
     toward(situation, other.at, out);
@@ -182,13 +182,13 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
 }
 
-/// 4 values: direction of a place along the boat's axes, distance and nearness.
+/// 4 values: direction of a place in the boat's axes, distance and nearness.
 fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     let line = place - situation.at;
     let [ahead_m, starboard_m] = along_axes(situation, line);
     let distance_m = math::length(ahead_m, starboard_m);
-    // A direction as two components, not as an angle, which jumps from half a turn to minus half a
-    // turn astern.
+    // Give the direction as two components, not as an angle, which jumps from half a turn to minus
+    // half a turn astern.
     let per_m = if distance_m > 1e-6 {
         1.0 / distance_m
     } else {
@@ -196,12 +196,12 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     };
     out.extend([ahead_m * per_m, starboard_m * per_m]);
     out.push((distance_m / LENGTH_M).min(LENGTHS_MAX));
-    // In addition to the distance in hundreds of metres: the last ten metres, in which boats tag
-    // and touch, would be a tenth of a unit.
+    // In addition to the distance in hundreds of metres, in which the last ten metres, where boats
+    // tag and touch, would be a tenth of a unit.
     out.push(NEAR_M / (NEAR_M + distance_m));
 }
 
-/// A vector's components ahead of the boat and to starboard.
+/// The forward and starboard components of a vector.
 fn along_axes(situation: &Situation, vector: Ned) -> [f64; 2] {
     let ahead = situation.ahead;
     [

@@ -1,10 +1,10 @@
 //! The drift of a boat: the velocity that wind, waves and current add to its velocity through the
-//! water, and how much that varies.
+//! water, and how much it varies.
 //!
-//! Thrusters push a boat along its heading and nothing pushes it across, so its velocity across the
-//! heading is the drift's component there. A Kalman filter combines these components from all
-//! headings into a vector over the ground. The drift d is a random walk, and a decision measures it
-//! along the starboard unit vector h:
+//! Thrusters push a boat only along its heading, so its velocity across the heading is the drift's
+//! component in that direction. A Kalman filter combines these components from all headings into a
+//! vector over the ground. The drift d is a random walk, and a decision measures it along the
+//! starboard unit vector h:
 //!
 //! ```text
 //! d' = d + w,  w ~ N(0, q dt I)          z = h.d + e,  e ~ N(0, r / dt)
@@ -12,38 +12,39 @@
 //! ```
 //!
 //! Along one axis the Riccati equation settles at the gain sqrt(q / r) per second (Kalman and Bucy
-//! 1961): the quieter the water, the faster the filter. Wave disturbance is not white noise: with
+//! 1961): the calmer the water, the faster the filter. Wave disturbance is not white noise: with
 //! the variance s² and the correlation time T it has the density r = 2 s² T at frequencies far
 //! below those of the waves. s² is the mean square of the innovation.
 //!
 //! In a turn a boat slides outwards, apart from any drift: by Y = -(m + A11) u r against the
-//! resistance in sway, with the values of the boat's file (Fossen 2021, ch. 6). A part of that
-//! counts as noise.
+//! resistance in sway, with values from the boat file (Fossen 2021, ch. 6). A part of this counts
+//! as noise.
 //!
 //! The component along a constant heading is unobservable. A boat that steers by speed over the
-//! ground does not need it, and it becomes known with the first turn.
+//! ground does not need it, and the first turn reveals it.
 
 use super::handling::Handling;
 use messages::picture::Nav;
 use primitives::{Ned, math};
 
-/// Variance of the drift's change per second, m²/s³: a gust or a turn beam-on changes it by 0.2 m/s
-/// in four seconds.
+/// Variance of the drift's change per second, m²/s³: a gust or a turn beam-on changes the drift by
+/// 0.2 m/s in four seconds.
 const WALK_M2_S3: f64 = 0.01;
-/// Variance of an unknown drift, its upper bound, m²/s².
+/// Variance of an unknown drift, and upper bound of the variance, m²/s².
 const UNKNOWN_M2_S2: f64 = 1.0;
 /// Correlation time of the wave disturbance, s.
 const WAVE_TIME_S: f64 = 0.5;
-/// Minimum standard deviation of the velocity across, m/s: a satellite receiver's.
+/// Minimum standard deviation of the velocity across the heading, m/s: that of a satellite
+/// receiver.
 const NOISE_M_S: f64 = 0.05;
 /// Time constant of the mean square, s.
 const SPREAD_TIME_S: f64 = 20.0;
-/// Relative error of the slide computed from the boat's file.
+/// Relative error of the slide computed from the boat file.
 const SLIDE_ERROR: f64 = 0.5;
 /// Correlation time of that error, s: a turn.
 const SLIDE_TIME_S: f64 = 4.0;
 
-/// The estimate. The default is that of an unknown boat.
+/// The estimate. The default is that for an unknown boat.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DriftEstimate {
     /// The drift over the ground, m/s.
@@ -52,7 +53,7 @@ pub(crate) struct DriftEstimate {
     variance: (f64, f64, f64),
     /// Mean square of the innovation, m²/s².
     square_m2_s2: f64,
-    /// The boat's slide in its turn, m/s to starboard.
+    /// The boat's slide in its turn, to starboard, m/s.
     slide_m_s: f64,
 }
 
@@ -68,14 +69,14 @@ impl Default for DriftEstimate {
 }
 
 impl DriftEstimate {
-    /// Processes navigation that is `step_s` newer than the last.
+    /// Processes navigation data that is `step_s` newer than the last.
     pub(crate) fn observe(&mut self, nav: &Nav, handling: &Handling, step_s: f64) {
         if step_s <= 0.0 || !(nav.sway_m_s.is_finite() && nav.psi_rad.is_finite()) {
             return;
         }
         let (north, east, both) = self.variance;
-        // Bounded, so that a single wave does not determine the drift along an axis that was not
-        // observed for an hour.
+        // Bounded, so that a single wave does not determine the drift along an axis unobserved for
+        // an hour.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
         let north = grown(north);
         let east = grown(east);
@@ -103,7 +104,7 @@ impl DriftEstimate {
             east - gain.east * of_starboard.east,
             both - gain.north * of_starboard.east,
         );
-        // In a turn the slide causes the innovation.
+        // In a turn, the slide causes the innovation.
         let own_m2_s2 =
             (surprise_m_s * surprise_m_s - error_m_s * error_m_s).max(NOISE_M_S * NOISE_M_S);
         self.square_m2_s2 += (step_s / SPREAD_TIME_S).min(1.0) * (own_m2_s2 - self.square_m2_s2);

@@ -1,5 +1,5 @@
-//! Handling: how soon, fast and hard a boat turns and brakes, according to its file and later to
-//! observation.
+//! Handling: how soon, fast and hard a boat turns and brakes, initially from its file and later
+//! from observation.
 
 use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
 
@@ -9,18 +9,18 @@ const MEAN_OF_STEADY: f64 = 0.7;
 const DECISION_S: f64 = 0.45;
 /// Mean yaw rate of a turn as a fraction of its initial rate, since the error decreases.
 const MEAN_OF_FIRST: f64 = 0.6;
-/// Minimum turn rate of a boat with thrusters as a fraction of the maximum: the helm keeps asking
-/// for more during a turn.
+/// Minimum turn rate of a boat with thrusters as a fraction of the maximum: the helm keeps ordering
+/// more during a turn.
 const LEAST_OF_MOST: f64 = 0.3;
 /// The same for a point boat, which takes half a minute for the last degrees of a turn.
 const LEAST_OF_POINT_BOAT: f64 = 0.1;
-/// Time constant of the observed turn rate, s of turning.
+/// Time constant of the observed turn rate, in seconds of turning.
 const MEMORY_S: f64 = 8.0;
 /// Turning time after which observation counts as much as the file, s.
 const TRUST_S: f64 = 3.0;
 /// Heading error below which turning is not observed, rad.
 const ERROR_MIN_RAD: f64 = 0.35;
-/// Accepted range of the observed turn rate as a fraction of the file's.
+/// Accepted range of the observed turn rate, relative to that in the file.
 const SHARE: (f64, f64) = (0.25, 1.5);
 
 /// Acceleration assumed for a boat without an acceleration limit, m/s².
@@ -40,7 +40,8 @@ pub(crate) struct Handling {
     /// Acceleration and deceleration, m/s².
     pub(crate) acceleration_m_s2: f64,
     pub(crate) deceleration_m_s2: f64,
-    /// Outward drift velocity per unit of speed × yaw rate in a turn, s, and its decay time, s.
+    /// Outward drift velocity per product of speed and yaw rate in a turn (s), and its decay time
+    /// (s).
     pub(crate) slide_s: f64,
     pub(crate) slide_decay_s: f64,
 }
@@ -57,7 +58,7 @@ impl Handling {
         }
     }
 
-    /// A boat that makes every turn at the same yaw rate.
+    /// The handling of a boat that makes every turn at the same yaw rate.
     #[cfg(test)]
     pub(crate) const fn evenly(turn_rad_s: f64) -> Handling {
         Handling {
@@ -72,7 +73,7 @@ impl Handling {
         }
     }
 
-    /// The same handling at this fraction of its yaw rates.
+    /// The same handling with this fraction of the yaw rates.
     pub(crate) fn turning(self, share: f64) -> Handling {
         Handling {
             turn_rad_s: share * self.turn_rad_s,
@@ -87,7 +88,7 @@ impl Handling {
         (self.turn_per_rad_s * error_rad).clamp(-self.turn_rad_s, self.turn_rad_s)
     }
 
-    /// The mean yaw rate of a turn by an angle, rad/s, never negative.
+    /// The mean yaw rate of a turn by an angle, never negative, rad/s.
     #[inline(always)]
     pub(crate) fn mean_turn_rad_s(&self, by_rad: f64) -> f64 {
         let first_rad_s = MEAN_OF_FIRST * self.turn_per_rad_s * by_rad.abs();
@@ -106,7 +107,7 @@ impl Handling {
 
 /// The steady yaw rate at half speed solves N = (N_r + N_ur u) r + N_rr r² for the largest moment N
 /// of both thrusters. A loop with natural frequency w and damping ratio z starts to turn like a
-/// first-order one with w / (2 z).
+/// first-order loop with w / (2 z).
 fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Handling {
     let (ahead_newton, astern_newton) = match &thruster.curve {
         ThrustCurve::Propeller(p) => (
@@ -149,7 +150,7 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
 /// The point boat's law (see `sim::kinematic`): the heading loop sets the rudder, in per cent per
 /// degree and per cent per (degree/s), and the yaw rate is proportional to rudder and thrust. With
 /// k for the yaw rate per rudder at full thrust, r = k (p e - d r) gives k p / (1 + k d) per unit
-/// of heading error. It reaches half of the acceleration limits.
+/// of heading error. The boat reaches half of the acceleration limits.
 fn of_kinematic(kinematic: &Kinematic) -> Handling {
     let per_rudder_rad_s = kinematic.turn_rate.to_radians() / 100.0 * (kinematic.thrust_max / 50.0);
     let [rudder_per_rad, rudder_per_rad_s] =
@@ -175,20 +176,20 @@ fn of_kinematic(kinematic: &Kinematic) -> Handling {
     }
 }
 
-/// The boat's observed turn rate relative to its file: the least-squares ratio of observed to
-/// expected yaw rates, with a prior of 1 weighted like [`TRUST_S`] seconds of turning, and
+/// The boat's observed turn rate relative to that in its file: the least-squares ratio of observed
+/// to expected yaw rates, with a prior of 1 weighted like [`TRUST_S`] seconds of turning, and
 /// exponential forgetting.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SeenTurn {
     /// Sums of expected × observed and of expected², rad²/s.
     seen: f64,
     expected: f64,
-    /// The expected yaw rate now, rad/s; it builds up over the reaction time.
+    /// The expected current yaw rate, which builds up over the reaction time, rad/s.
     rate_rad_s: f64,
 }
 
 impl SeenTurn {
-    /// Updates the estimate with the yaw rate measured after `step_s` with this heading error.
+    /// Updates the estimate with the yaw rate measured after `step_s` at this heading error.
     pub(crate) fn observe(
         &mut self,
         error_rad: f64,
@@ -207,7 +208,7 @@ impl SeenTurn {
         self.expected = kept * self.expected + self.rate_rad_s * self.rate_rad_s * step_s;
     }
 
-    /// The turn rate as a fraction of the file's.
+    /// The turn rate as a fraction of that in the file.
     pub(crate) fn share(&self, handling: &Handling) -> f64 {
         let file = TRUST_S * handling.turn_rad_s * handling.turn_rad_s;
         ((file + self.seen) / (file + self.expected)).clamp(SHARE.0, SHARE.1)

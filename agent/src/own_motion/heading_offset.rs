@@ -1,8 +1,8 @@
 //! The heading offset: the steady difference between the boat's heading and the ordered one.
 //!
-//! A front seat that steers only by the heading error and its rate has a steady error against a
-//! lasting moment, such as wind on the beam or unequal thrusters. The offset is observed with a
-//! model of the boat's turning (Luenberger 1964) without any moment:
+//! A front seat that steers only by the heading error and its rate has a steady error under a
+//! lasting moment, such as from wind on the beam or unequal thrusters. The offset is observed with
+//! a model of the boat's turning (Luenberger 1964) without any moment:
 //!
 //! ```text
 //! model' = rate(order - model) + L1 e       offset' = L2 e       e = heading - model - offset
@@ -16,10 +16,10 @@ use primitives::math;
 const MODEL_GAIN_PER_S: f64 = 0.6;
 /// Learning rate of the offset, 1/s.
 const OFFSET_GAIN_PER_S: f64 = 0.25;
-/// While the model must still turn by more than this, the offset is not updated, because the
-/// difference comes from the turn, rad.
+/// Remaining turn of the model above which the offset is not updated, because the difference comes
+/// from the turn, rad.
 const TURNING_RAD: f64 = 0.35;
-/// Change of heading after which an offset is no longer valid, because the wind acts at another
+/// Change of heading after which an offset is no longer valid, because the wind acts at a different
 /// angle, rad.
 const FORGOTTEN_RAD: f64 = 0.8;
 /// Upper bound of the offset, rad.
@@ -30,7 +30,7 @@ const OFFSET_MAX_RAD: f64 = 0.7;
 pub(crate) struct HeadingOffset {
     /// The offset, rad clockwise.
     pub(super) offset_rad: f64,
-    /// The modelled heading without the offset; `None` before the first.
+    /// The modelled heading without the offset; `None` before the first measurement.
     model_rad: Option<f64>,
 }
 

@@ -1,8 +1,8 @@
 //! The boat's response to orders: its drift, its heading offset and its handling.
 //!
-//! Everything derives from the boat's file, its own navigation and its own orders, so that it works
-//! on a real boat as it does in simulation. Decisions are heading and speed through the water; the
-//! velocity over the ground is that plus the drift.
+//! Everything derives from the boat file, the boat's own navigation and its own orders, so that it
+//! works on a real boat as in simulation. Decisions are heading and speed through the water; the
+//! velocity over the ground is their sum with the drift.
 
 mod drift;
 mod handling;
@@ -23,24 +23,24 @@ use std::f64::consts::PI;
 /// Maximum turn in one order, rad: a front seat turns the shorter way, which is ambiguous for half
 /// a turn.
 const TURN_MAX_RAD: f64 = 2.6;
-/// A point boat whose thrust follows the order brakes at full deceleration when its order is lower
-/// by the speed that it then loses in this time, s.
+/// A point boat whose thrust follows the order brakes fully if the order is lower than its speed by
+/// at least the loss of speed in this time, s.
 const BRAKES_S: f64 = 1.0;
-/// A point boat that has to turn by this angle, rad, is ordered more speed than it has, so that it
-/// has thrust to turn with; from the second angle on, full speed.
+/// Turn angle from which a point boat is ordered more than its current speed, to have thrust for
+/// turning, and the angle from which it is ordered full speed, rad.
 const STEERS_FROM_RAD: (f64, f64) = (0.35, 1.0);
-/// A turn at least this large keeps its initial side, rad.
+/// Minimum turn that keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;
 
 /// The speed reference of a front seat.
 #[derive(Clone, Copy, Debug)]
 enum SpeedReference {
-    /// Ahead over the ground.
+    /// Forward speed over the ground.
     Ground,
-    /// Through the water, as for point boats.
+    /// Speed through the water, as for point boats.
     Water {
         /// For a boat that steers by differential thrust, with thrust proportional to the ordered
-        /// speed: it brakes at full deceleration when its order is lower by this much, m/s.
+        /// speed: how much lower the order must be for full deceleration, m/s.
         brakes_by_m_s: Option<f64>,
         /// How much more speed to order in a turn, m/s.
         steers_by_m_s: f64,
@@ -52,18 +52,17 @@ pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
-    /// Whether orders compensate for drift and offset; if not, both estimates stay at their
-    /// defaults.
+    /// Whether orders compensate for drift and offset; if not, both estimates keep their defaults.
     compensates: bool,
     drift: DriftEstimate,
     offset: HeadingOffset,
     turn: SeenTurn,
-    /// The desired heading and the one ordered for it, rad; `None` after another order.
+    /// The desired heading and the heading ordered for it, rad; `None` after any other order.
     ordered: Option<(f64, f64)>,
     fix_at: SimTime,
     psi_rad: f64,
     surge_m_s: f64,
-    /// The side of the last large turn ordered, 1 starboard, -1 port; otherwise 0.
+    /// The side of the last large turn ordered: 1 for starboard, -1 for port; otherwise 0.
     side: f64,
 }
 
@@ -97,8 +96,8 @@ impl OwnMotion {
         }
     }
 
-    /// Processes the boat's state `step_s` after the last call. `obeys` is whether the rules let it
-    /// follow its orders.
+    /// Processes the boat's state `step_s` after the last call. `obeys` states whether the rules
+    /// let the boat follow its orders.
     pub(crate) fn observe(&mut self, own: &OwnBoat, step_s: f64, obeys: bool) {
         (self.psi_rad, self.surge_m_s) = (own.nav.psi_rad, own.nav.surge_m_s);
         if !self.compensates || step_s <= 0.0 {
@@ -106,7 +105,7 @@ impl OwnMotion {
         }
         // A repeated velocity carries no new information.
         if own.fix_ns > self.fix_at {
-            // At most a second: after a gap in navigation one velocity must not count as several.
+            // At most a second: after a gap in navigation, one velocity must not count as several.
             self.drift.observe(
                 &own.nav,
                 &self.file,
@@ -126,13 +125,13 @@ impl OwnMotion {
         }
     }
 
-    /// Velocity over the ground minus that through the water, m/s.
+    /// Velocity over the ground minus velocity through the water, m/s.
     pub(crate) fn drift(&self) -> Ned {
         self.drift.drift
     }
 
-    /// The velocity to add to a decision's, m/s: the estimated drift, or the boat's present sway if
-    /// drift is not estimated.
+    /// The velocity to add to that of a decision, m/s: the estimated drift, or the boat's current
+    /// sway if drift is not estimated.
     pub(crate) fn drift_now(&self, nav: &Nav) -> Ned {
         if self.compensates {
             self.drift.drift
@@ -146,7 +145,7 @@ impl OwnMotion {
         self.drift.spread_m_s()
     }
 
-    /// The heading's offset from the ordered one, rad clockwise.
+    /// The offset of the heading from the ordered heading, rad clockwise.
     pub(crate) fn heading_offset_rad(&self) -> f64 {
         self.offset.offset_rad
     }
@@ -156,9 +155,9 @@ impl OwnMotion {
         self.file.turning(self.turn.share(&self.file))
     }
 
-    /// Heading, rad, and speed through the water for a course, rad, at a speed over the ground: |U
+    /// Heading (rad) and speed through the water for a course (rad) and a speed over the ground: |U
     /// c - d|, limited to the boat's top speed. A boat that cannot reach the speed keeps the
-    /// course. If it cannot keep the course either, it points as close to it as it can.
+    /// course. If it cannot keep the course either, it points as close to the course as it can.
     pub(crate) fn steer(&self, course_rad: f64, speed_m_s: f64) -> (f64, f64) {
         let drift = self.drift();
         if drift == Ned::default() {
@@ -168,12 +167,12 @@ impl OwnMotion {
         let course = Ned { north, east };
         let along_m_s = drift.dot(course);
         let across = drift - course.scaled(along_m_s);
-        // The triangle of velocities: compensating the drift across the course uses some of the
-        // boat's speed, and the rest goes along it.
+        // The triangle of velocities: compensating for the drift across the course uses part of the
+        // boat's speed, and the rest acts along the course.
         let room = self.speed_max_m_s * self.speed_max_m_s - across.dot(across);
         // A grid of courses over the ground would need the heading of each point for its turn, and
-        // would treat an order to stop as no motion through the water. A behaviour that wants a
-        // course therefore gets its crab angle here, once.
+        // would interpret an order to stop as no motion through the water. The crab angle is
+        // therefore computed here, once, for a behaviour that wants a course.
         let fastest_m_s = along_m_s + room.max(0.0).sqrt();
         let way = course.scaled(speed_m_s.min(fastest_m_s)) - drift;
         let through_m_s = way.length();
@@ -186,7 +185,7 @@ impl OwnMotion {
         )
     }
 
-    /// The order for a heading, rad, at a speed through the water.
+    /// The order for a heading (rad) and a speed through the water.
     pub(crate) fn order(&mut self, heading_rad: f64, speed_m_s: f64) -> Order {
         let heading_rad = wrap_pi(heading_rad);
         if !self.compensates {
@@ -205,9 +204,10 @@ impl OwnMotion {
                 let (east, north) = math::sin_cos(heading_rad);
                 (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
             }
-            // A point boat turns by thrust. With its final low speed ordered at once, it would cut
-            // its thrust and coast straight on while it brakes; at rest, it would not turn at all.
-            // It needs no lower order in a turn, because full rudder costs it most of its speed.
+            // A point boat needs thrust to turn. If its low final speed were ordered at once, it
+            // would cut its thrust and coast straight on while braking; at rest, it would not turn
+            // at all. It needs no lower order in a turn, because full rudder costs it most of its
+            // speed.
             SpeedReference::Water {
                 brakes_by_m_s,
                 steers_by_m_s,
@@ -230,7 +230,7 @@ impl OwnMotion {
         }
     }
 
-    /// The heading to order: the desired one or, for nearly half a turn, an intermediate one,
+    /// The heading to order: the desired heading or, for nearly half a turn, an intermediate one,
     /// always on the same side. Otherwise the slightest yaw would reverse the turn.
     fn turn_toward(&mut self, heading_rad: f64) -> f64 {
         let turn_rad = wrap_pi(heading_rad - self.psi_rad);
@@ -269,7 +269,7 @@ mod tests {
         OwnMotion::new(&boat, boat.speed_max_m_s(), true)
     }
 
-    /// Feeds navigation ten times per second for `for_s`, from `after_s` on.
+    /// Feeds navigation data ten times per second for `for_s`, starting at `after_s`.
     fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: Nav) {
         for i in 0..(10.0 * for_s) as u32 {
             let at_s = 0.1 * f64::from(i);
@@ -308,13 +308,13 @@ mod tests {
             "the sine of the crab angle is d / V"
         );
         assert!((speed_m_s - math::length(1.5, drift_m_s)).abs() < 0.01);
-        // A speed beyond the boat's capability becomes its maximum on that course.
+        // A speed beyond the boat's capability becomes the maximum on that course.
         let (heading_rad, speed_m_s) = motion.steer(0.0, 5.0);
         assert!(
             (speed_m_s - 3.0).abs() < 1e-9
                 && (heading_rad + libm::asin(drift_m_s / 3.0)).abs() < 0.01
         );
-        // To stop over the ground, it points against the drift.
+        // To stop over the ground, the boat points against the drift.
         let (heading_rad, speed_m_s) = motion.steer(0.0, 0.0);
         assert!((heading_rad + 0.5 * PI).abs() < 0.03 && (speed_m_s - drift_m_s).abs() < 1e-9);
     }
@@ -324,7 +324,7 @@ mod tests {
         let mut motion = motion("surveyor_m1_8");
         let mut ordered_rad = 0.0;
         for i in 0..600 {
-            // A lasting moment holds it 0.3 rad to starboard of its order.
+            // A lasting moment holds the boat 0.3 rad to starboard of its order.
             show(
                 &mut motion,
                 0.1 * f64::from(i),
@@ -351,11 +351,12 @@ mod tests {
             ("large_usv_kinematic", 6.0, 0.1, 0.3, 5.5),
             ("large_usv_kinematic", 6.0, 0.1, 7.0, 7.0),
             ("surveyor_kinematic", 2.0, 0.1, 0.3, 0.3),
-            // It would cut its thrust, and with it its rudder, until it has slowed down.
+            // It would cut its thrust, and with it the effect of its rudder, until it has slowed
+            // down.
             ("surveyor_kinematic", 1.0, 2.0, 0.3, 2.5),
             ("surveyor_kinematic", 2.0, 2.0, 0.3, 3.0),
             ("surveyor_kinematic", 0.0, 0.675, 0.1, 0.75),
-            // A boat that is to stop need not turn, and one with two thrusters turns at rest.
+            // A boat that has to stop need not turn, and one with two thrusters can turn at rest.
             ("surveyor_kinematic", 1.0, 2.0, 0.0, 0.0),
             ("surveyor_m1_8", 0.0, 2.0, 0.3, 0.3),
         ] {
@@ -407,7 +408,7 @@ mod tests {
     #[test]
     fn a_boat_is_known_by_its_file_and_then_by_how_it_turns() {
         // Reaction, s, and yaw rate, rad/s: constants once used for all boats, measured on this
-        // one.
+        // boat.
         let surveyor = motion("surveyor_m1_8").handling();
         assert!(
             (surveyor.reaction_s - 0.7).abs() < 0.1 && (surveyor.turn_rad_s - 0.35).abs() < 0.05,

@@ -1,4 +1,4 @@
-//! The game as one boat sees it: everything constant during a game.
+//! The game as seen by one boat: everything that is constant during a game.
 
 use primitives::{FlagId, Ned, TeamId, VehicleId};
 use rules::{Field, Rules};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 const PYQUATICUS_SCORE_MAX: f64 = 20.0;
 const HAS_ALL: &str = "a checked field has flags and corners for every team";
 
-/// What all boats of a team know alike before the game begins.
+/// Knowledge that all boats of a team share before the game begins.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TeamModel {
     pub(crate) team: TeamId,
@@ -39,9 +39,9 @@ pub(crate) struct GameModel {
     pub(crate) targets: Vec<(FlagId, Ned)>,
     /// The flags to defend.
     pub(crate) own_flags: Vec<(FlagId, Ned)>,
-    /// The score that ends the game, or Pyquaticus' default.
+    /// The score that ends the game, or Pyquaticus's default.
     pub(crate) score_max: f64,
-    /// The highest speed of the helm's decisions, m/s.
+    /// The maximum speed of the helm's decisions, m/s.
     pub(crate) speed_max_m_s: f64,
     /// The team's named points, sorted by name.
     points: Vec<(String, Ned)>,
@@ -77,7 +77,7 @@ impl GameModel {
             .into_iter()
             .filter_map(|name| field.point(team, &name).map(|at| (name, at)))
             .collect();
-        // Sorted once for binary search: expressions look points up by name at every decision.
+        // Sorted once for binary search: expressions look up points by name at every decision.
         points.sort_by(|a, b| a.0.cmp(&b.0));
         let speed_m_s = |i: usize| scenario.boat_of(VehicleId::at(i)).speed_max_m_s();
         let boat_speeds_m_s: Vec<f64> = (0..scenario.vehicles.len()).map(speed_m_s).collect();
@@ -114,21 +114,21 @@ impl GameModel {
         found.ok().map(|i| self.points[i].1)
     }
 
-    /// The place to bring a flag to, from here.
+    /// The place to which a flag must be brought from `at`.
     pub(crate) fn capture_place(&self, at: Ned) -> Ned {
         self.rules
             .capture_place(&self.field, self.team, at)
             .expect(HAS_ALL)
     }
 
-    /// The place to steer a tagged boat to, from here.
+    /// The place to which a tagged boat must be steered from `at`.
     pub(crate) fn untag_place(&self, at: Ned) -> Ned {
         self.rules
             .untag_place(&self.field, self.team, at)
             .expect(HAS_ALL)
     }
 
-    /// The centre of the untagging circle, from here.
+    /// The centre of the untagging circle for a boat at `at`.
     pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
         self.rules
             .untag_centre(&self.field, self.team, at)
@@ -137,7 +137,7 @@ impl GameModel {
 }
 
 impl TeamModel {
-    /// The home of the team's flag that is nearest to a place.
+    /// The home of the team's flag nearest to a place.
     pub(crate) fn own_flag_near(&self, at: Ned) -> Ned {
         self.field.nearest_own_flag(self.team, at).expect(HAS_ALL)
     }

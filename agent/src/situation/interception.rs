@@ -1,25 +1,25 @@
 //! Interception: assigns boats of the team to intruders.
 //!
-//! Every boat computes it from the whole team's knowledge, so all get the same result without
-//! communication.
+//! Every boat computes the assignment from the whole team's knowledge, so all get the same result
+//! without communication.
 
 use primitives::{Ned, VehicleId};
 
-/// Bonus for the previous assignment, as an earlier meeting time, s. Observations are noisy, and
-/// two boats that swap intruders at every picture meet neither.
+/// Bonus for the previous assignment, as a reduction of the meeting time, s. Observations are
+/// noisy, and two boats that swap intruders at every picture meet neither.
 const KEPT_S: f64 = 3.0;
 
-/// Largest relative rounding error of a bound, with a margin.
+/// Maximum relative rounding error of a bound, with a margin.
 const ROUNDING: f64 = 1.001;
 
-/// A boat that can be sent to meet an intruder.
+/// A boat available to meet an intruder.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interceptor {
     pub(super) vehicle: VehicleId,
     pub(super) at: Ned,
-    /// Its top speed, m/s.
+    /// The boat's top speed, m/s.
     pub(super) speed_m_s: f64,
-    /// Time until it can tag, s.
+    /// Time until the boat can tag, s.
     pub(super) unready_s: f64,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Interceptor {
 pub(super) struct Intruder {
     pub(super) vehicle: VehicleId,
     pub(super) at: Ned,
-    /// Its velocity over the ground, m/s.
+    /// The enemy's velocity over the ground, m/s.
     pub(super) velocity: Ned,
 }
 
@@ -46,8 +46,8 @@ pub(super) fn assign(
     intruders: &[Intruder],
     before: &[Pair],
 ) -> Vec<Pair> {
-    // Greedy, not the best sum over all pairs: the intruder nearest to the flag matters most, and a
-    // distant boat does not change the result.
+    // Greedy, not the best sum over all pairs: the intruder nearest to the flag matters most, and
+    // distant boats must not change the result.
     let mut left: Vec<&Interceptor> = interceptors.iter().collect();
     let mut pairs = Vec::with_capacity(intruders.len().min(left.len()));
     for intruder in intruders {
@@ -70,7 +70,7 @@ pub(super) fn assign(
         let mut soonest_s = f64::INFINITY;
         let mut soonest = None;
         for (i, interceptor) in left.iter().enumerate() {
-            // With many boats most are too far away to be sooner, even head-on. Computing the
+            // With many boats, most are too far away to be first, even head-on. Computing the
             // meeting time of every pair took a quarter of a game of 100 against 100.
             let reach_m = (interceptor.speed_m_s + intruder_m_s) * (soonest_s + KEPT_S) * ROUNDING;
             if interceptor.at.distance_squared(intruder.at) > reach_m * reach_m {
@@ -91,14 +91,14 @@ pub(super) fn assign(
 }
 
 /// Time until both can be at the same place, s. If the intruder outruns the boat, the time until
-/// the boat reaches the intruder's present position.
+/// the boat reaches the intruder's current position.
 fn time_to_meet_s(interceptor: &Interceptor, intruder: &Intruder) -> f64 {
     let line = intruder.at - interceptor.at;
     meeting_time_s(line, intruder.velocity, interceptor.speed_m_s)
         .unwrap_or_else(|| 2.0 * line.length() / interceptor.speed_m_s)
 }
 
-/// The earliest time at which a boat going straight at this speed meets a contact at `line` of
+/// The earliest time at which a boat driving straight at this speed meets a contact at `line` of
 /// constant velocity, s; `None` if they never meet.
 ///
 /// The time is the smallest positive root of |line + velocity t| = speed t.

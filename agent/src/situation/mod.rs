@@ -28,12 +28,12 @@ use std::sync::Arc;
 use team_messages::TeamMessages;
 use turn_estimate::turning_on;
 
-/// Distance to anything unknown, m.
+/// Distance to an unknown object, m.
 const NOWHERE_M: f64 = 1e9;
-/// A boat this far inside its untagging place was tagged there and must leave it, as a fraction of
-/// the radius.
+/// Maximum distance from the centre of its untagging place at which a boat was tagged there and
+/// must leave it, as a fraction of the radius.
 const WELL_INSIDE: f64 = 0.5;
-/// Fraction of the radius beyond which it counts as having left.
+/// Fraction of the radius beyond which the boat counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
 
 /// Another boat.
@@ -41,7 +41,7 @@ const WELL_OUTSIDE: f64 = 1.2;
 pub(crate) struct OtherBoat {
     pub(crate) vehicle: VehicleId,
     pub(crate) is_enemy: bool,
-    /// Its estimated position now.
+    /// Its estimated current position.
     pub(crate) at: Ned,
     velocity: Velocity,
     pub(crate) psi_rad: f64,
@@ -52,17 +52,17 @@ pub(crate) struct OtherBoat {
     /// Whether power play has put it out of action.
     pub(crate) disabled: bool,
     pub(crate) carrying: Option<FlagId>,
-    /// The earliest time of its next tag: from a mate's own messages; for enemies only if they
-    /// tagged a boat of the team.
+    /// The earliest time of the boat's next tag: for a teammate from its own messages; for enemies
+    /// only if they tagged a boat of the team.
     pub(crate) tag_ready: SimTime,
-    /// Age of the last observation, s; mates report themselves in every picture.
+    /// Age of the last observation, s; teammates report themselves in every picture.
     pub(crate) age_s: f64,
-    /// Whether it is an enemy on the team's own side.
+    /// Whether the boat is an enemy on the team's own side.
     pub(crate) intrudes: bool,
 }
 
-/// A velocity over the ground as received, m/s. It is rotated on demand, because few boats of a
-/// large team need it.
+/// A velocity over the ground as received, m/s. It is rotated on demand, since few boats of a large
+/// team need it.
 #[derive(Clone, Copy, Debug)]
 enum Velocity {
     Ned(Ned),
@@ -71,7 +71,7 @@ enum Velocity {
 }
 
 impl OtherBoat {
-    /// Its velocity over the ground, m/s.
+    /// The boat's velocity over the ground, m/s.
     pub(crate) fn velocity(&self) -> Ned {
         match self.velocity {
             Velocity::Ned(velocity) => velocity,
@@ -90,7 +90,7 @@ pub(crate) struct Situation {
     pub(crate) step_s: f64,
     /// Whether a picture has been processed.
     begun: bool,
-    /// For a previewed picture: whether it shows the boat itself.
+    /// Whether a previewed picture shows the boat itself.
     is_seen: Option<bool>,
     pub(crate) mode_since: SimTime,
     pub(crate) own: OwnBoat,
@@ -101,7 +101,7 @@ pub(crate) struct Situation {
     pub(crate) velocity: Ned,
     /// The boat's response to orders.
     pub(crate) motion: OwnMotion,
-    /// What the whole team knows.
+    /// The knowledge of the whole team.
     pub(crate) view: Arc<TeamView>,
     pub(crate) variables: Vec<f64>,
     pub(crate) team_messages: TeamMessages,
@@ -114,13 +114,13 @@ pub(crate) struct Situation {
     /// The interception pairs, computed on first use in a decision.
     interception: OnceCell<Arc<[Pair]>>,
     interception_before: Arc<[Pair]>,
-    /// Whether the boat was tagged inside its untagging place and must leave it before it can come
-    /// home.
+    /// Whether the boat was tagged inside its untagging place and must leave it before it can
+    /// return to it.
     leaving: bool,
 }
 
 impl Situation {
-    /// Before the first picture. `compensates` is whether the drift is estimated.
+    /// The situation before the first picture. `compensates` states whether the drift is estimated.
     pub(crate) fn new(
         scenario: &Scenario,
         vehicle: VehicleId,
@@ -175,8 +175,8 @@ impl Situation {
             return false;
         };
         let now = picture.stamp.valid_ns;
-        // By the pictures' own time, so that a lost one means a longer step and a repeated one a
-        // step of zero.
+        // Use the pictures' own time, so that a lost picture means a longer step and a repeated one
+        // a step of zero.
         self.step_s = if self.begun {
             (now - self.now).as_s().max(0.0)
         } else {
@@ -190,7 +190,7 @@ impl Situation {
             self.step_s,
             !(own.disabled || own.tagged && self.model.rules.tagged_boat == TaggedBoat::IsDriven),
         );
-        // Only if this boat has seen all pictures that are in it, and no others.
+        // Only if this boat has seen exactly the pictures in it.
         match view.filter(|view| view.follows(&self.view)) {
             Some(view) => self.view = Arc::clone(view),
             None => TeamView::own(&mut self.view).take_in(picture),
@@ -211,7 +211,7 @@ impl Situation {
         let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
-        // With hysteresis: at a single limit, position noise would toggle the state.
+        // With hysteresis: with a single limit, position noise would toggle the state.
         let from_home =
             self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
         self.leaving =
@@ -230,13 +230,13 @@ impl Situation {
         )
     }
 
-    /// All other known boats: mates first, then enemies, each in the scenario's order.
+    /// All other known boats: teammates first, then enemies, each in the scenario's order.
     pub(crate) fn others(&self) -> impl Iterator<Item = &OtherBoat> {
         self.mates().chain(&self.view.boats[self.view.own..])
     }
 
-    /// Calls `each` with the index and the distance, m, of every other boat within this distance, in
-    /// any order.
+    /// Calls `each` with the index and the distance (m) of every other boat within this distance,
+    /// in any order.
     pub(crate) fn near(&self, reach_m: f64, mut each: impl FnMut(usize, f64)) {
         self.view.near(self.at, reach_m, |i, distance_m| {
             if i >= self.view.own || self.other(i).vehicle != self.model.me {
@@ -245,7 +245,7 @@ impl Situation {
         });
     }
 
-    /// A boat that [`Situation::near`] has named.
+    /// A boat by an index from [`Situation::near`].
     pub(crate) fn other(&self, i: usize) -> &OtherBoat {
         &self.view.boats[i]
     }
@@ -308,13 +308,13 @@ impl Situation {
         self.model.own_flag_near(at).distance_squared(at)
     }
 
-    /// The untagged mates without a flag.
+    /// The untagged teammates without a flag.
     fn free_mates(&self) -> impl Iterator<Item = &OtherBoat> {
         self.mates()
             .filter(|mate| !mate.tagged && mate.carrying.is_none())
     }
 
-    /// The present position and velocity of a place.
+    /// The current position and velocity of a place.
     pub(crate) fn locate(&self, place: &Place) -> Option<MovingPoint> {
         let still = |at: Ned| {
             Some(MovingPoint {
@@ -343,7 +343,7 @@ impl Situation {
         }
     }
 
-    /// The nearest flag to attack that is home, or else the nearest of all.
+    /// The nearest flag to attack that is at home, or else the nearest of all.
     fn enemy_flag(&self) -> Ned {
         let targets = self.model.targets.iter();
         let key = |(flag, home): &&(FlagId, Ned)| {
@@ -466,7 +466,7 @@ impl Values for Situation {
 fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>) -> f64 {
     let points = from.zip(to);
     match measure {
-        // Far away, not infinite: expressions may subtract, and infinity minus infinity is NaN.
+        // Far away, but finite: expressions may subtract, and infinity minus infinity is NaN.
         Measure::Distance => points.map_or(NOWHERE_M, |(from, to)| from.at.distance(to.at)),
         Measure::Closing => points.map_or(0.0, |(from, to)| closing_m_s(from, to)),
         _ => 0.0,

@@ -1,22 +1,22 @@
-//! Team messages: variables that a strategy shares, to and from mates.
+//! Team messages: the variables that a strategy shares with teammates.
 
 use messages::Word;
 use primitives::VehicleId;
 use scenario::strategy::{Expression, Kind, Program, Values, Variable};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// The last values received from one mate.
+/// The last values received from one teammate.
 #[derive(Clone, Debug)]
 struct MateVariables {
     mate: VehicleId,
-    /// By variable of this program: its value at the mate, if ever received.
+    /// Each of this program's variables as last received from the teammate, if ever.
     values: Vec<Option<f64>>,
 }
 
-/// The messages received from all mates.
+/// The messages received from all teammates.
 #[derive(Clone, Debug)]
 pub(crate) struct TeamMessages {
-    /// By variable: the key under which it is sent, if shared.
+    /// By variable: the key under which it is sent, if it is shared.
     keys: Vec<Option<u64>>,
     mates: Vec<MateVariables>,
 }
@@ -38,16 +38,16 @@ impl TeamMessages {
         }
     }
 
-    /// Whether anything is shared.
+    /// Whether any variable is shared.
     pub(crate) fn shares(&self) -> bool {
         self.keys.iter().any(Option::is_some)
     }
 
-    /// Receives messages of mates. Ignores other boats and unknown variables.
+    /// Receives teammates' messages. Ignores other boats and unknown variables.
     pub(crate) fn receive(&mut self, messages: &[Word]) {
         for word in messages.iter().filter(|word| word.value.is_finite()) {
             let variable = self.keys.iter().position(|key| *key == Some(word.key));
-            // Mates are in the scenario's order.
+            // Teammates are in the scenario's order.
             let mate = self
                 .mates
                 .binary_search_by_key(&word.vehicle, |from| from.mate);
@@ -71,8 +71,8 @@ impl TeamMessages {
         }));
     }
 
-    /// The number of mates for which `condition` holds. A mate without all required values does not
-    /// count.
+    /// The number of teammates for which `condition` holds. A teammate without all required values
+    /// does not count.
     pub(crate) fn count(&self, condition: &Expression) -> f64 {
         let holds = |from: &&MateVariables| {
             let mut complete = true;
@@ -90,7 +90,8 @@ impl TeamMessages {
     }
 }
 
-/// Two programs share a variable if its name and its possible values are the same.
+/// The key of a variable: two programs share a variable if its name and possible values are the
+/// same.
 fn key_of(variable: &Variable) -> u64 {
     let kind = match &variable.kind {
         Kind::Truth => "truth".to_owned(),
@@ -102,7 +103,7 @@ fn key_of(variable: &Variable) -> u64 {
     xxh3_64(format!("{} {kind}", variable.name).as_bytes())
 }
 
-/// Only the shared variables of mates are known.
+/// Only the shared variables of teammates are known.
 impl Values for MateVariables {
     fn variable(&self, index: u16) -> f64 {
         self.values

@@ -1,7 +1,7 @@
-//! A team's view: what all boats of a team know alike of each other and of other boats.
+//! A team's view: the knowledge that all boats of a team share about each other and other boats.
 //!
-//! A mind works it out from each picture. In a process with several boats of a team, the runner
-//! does so once for all of them: in a large fleet, everything else about a decision takes less time.
+//! A mind computes it from each picture. In a process with several boats of a team, the runner
+//! computes it once for all of them: in a large fleet, the rest of a decision takes less time.
 
 use super::game_model::TeamModel;
 use super::interception::{self, Interceptor, Intruder, Pair};
@@ -15,19 +15,19 @@ use rules::event::{EventRecord, TagCause};
 use rules::{Event, tag_wait_s};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A contact is assumed to keep its velocity for this long and then to slow down, s.
+/// How long a contact is assumed to keep its velocity before it slows down, s.
 const KEEPS_ON_S: f64 = 15.0;
-/// A contact is assumed to be at rest after this long, s.
+/// Time after which a contact is assumed to be at rest, s.
 const STILL_AFTER_S: f64 = 30.0;
-/// A boat of the team is dead reckoned after this time without a fix, s: at the usual delays it
-/// moves less than a receiver errs, and to rotate the motion of a whole fleet takes time.
+/// Time without a fix after which a boat of the team is dead reckoned, s: with the usual delays, it
+/// moves less than a receiver's error, and rotating the motion of a whole fleet takes time.
 const LATE_S: f64 = 0.5;
-/// Up to this many boats, all of them are compared with a place.
+/// Number of boats up to which all of them are compared with a place.
 const FEW: usize = 32;
-/// Width of the rows in which more boats are sorted, m.
+/// Width of the rows into which more boats are sorted, m.
 const ROW_M: f64 = 16.0;
 
-/// The way of a boat of the team since its last fix, at the velocity that it had then along its
+/// The track of a boat of the team since its last fix, given its velocity at the fix along its
 /// axes.
 #[derive(Clone, Copy, Debug)]
 struct Track {
@@ -37,14 +37,14 @@ struct Track {
     until: SimTime,
 }
 
-/// What all boats of a team know alike of each other and of other boats.
+/// The knowledge that all boats of a team share about each other and other boats.
 #[derive(Clone, Debug)]
 pub struct TeamView {
     model: Arc<TeamModel>,
     now: SimTime,
     /// All known boats: the team's own first, then contacts, each in the picture's order.
     pub(super) boats: Vec<OtherBoat>,
-    /// The number of the team's own.
+    /// The number of the team's own boats.
     pub(super) own: usize,
     /// Many boats by row from south to north, then from west to east: row, place, index.
     rows: Vec<(i64, Ned, usize)>,
@@ -52,23 +52,23 @@ pub struct TeamView {
     tracks: Vec<Option<Track>>,
     /// Turn estimates of contacts, by vehicle index.
     turns: Vec<Option<TurnEstimate>>,
-    /// By vehicle index: the earliest time of the next tag of enemies that tagged a boat of the
+    /// By vehicle index: the earliest time of the next tag, for enemies that tagged a boat of the
     /// team.
     tag_ready: Vec<SimTime>,
     /// Boats that power play has put out of action.
     disabled: Vec<VehicleId>,
     pairings: Pairings,
-    /// The number of pictures so far; and whose, if not only one mind's.
+    /// The number of pictures so far, and the owner of the view unless it is a single mind.
     pictures: u64,
     runner: Option<Arc<()>>,
 }
 
-/// Interception pairs of the present picture with the previous ones that they follow from.
+/// Interception pairs of the current picture, with the previous pairs from which they follow.
 #[derive(Debug, Default)]
 struct Pairings(Mutex<Vec<[Arc<[Pair]>; 2]>>);
 
 impl Clone for Pairings {
-    /// Empty: it only saves computing them again.
+    /// Empty: copying would only save computing them again.
     fn clone(&self) -> Pairings {
         Pairings::default()
     }
@@ -93,7 +93,7 @@ impl TeamView {
         }
     }
 
-    /// The same for all minds of a runner.
+    /// The same view, for all minds of a runner.
     pub(crate) fn shared(self) -> TeamView {
         TeamView {
             runner: Some(Arc::default()),
@@ -101,19 +101,19 @@ impl TeamView {
         }
     }
 
-    /// The same for one mind alone.
+    /// The same view, for one mind alone.
     pub(super) fn own(view: &mut Arc<TeamView>) -> &mut TeamView {
         let view = Arc::make_mut(view);
         view.runner = None;
         view
     }
 
-    /// The team.
+    /// The team of the view.
     pub(crate) fn team(&self) -> TeamId {
         self.model.team
     }
 
-    /// Whether this is `before` after one more picture.
+    /// Whether this view is `before` after one more picture.
     pub(super) fn follows(&self, before: &TeamView) -> bool {
         self.pictures == before.pictures + 1
             && match (&self.runner, &before.runner) {
@@ -123,7 +123,7 @@ impl TeamView {
             }
     }
 
-    /// Becomes a copy of `before`, except for what the next picture replaces.
+    /// Becomes a copy of `before`, except for the parts that the next picture replaces.
     pub(crate) fn remember(&mut self, before: &TeamView) {
         self.tracks.clone_from(&before.tracks);
         self.turns.clone_from(&before.turns);
@@ -132,7 +132,7 @@ impl TeamView {
         self.pictures = before.pictures;
     }
 
-    /// Takes in the next picture.
+    /// Processes the next picture.
     pub(crate) fn take_in(&mut self, picture: &Picture) {
         let now = picture.stamp.valid_ns;
         self.now = now;
@@ -148,8 +148,8 @@ impl TeamView {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
-                // In games of 20 against 20 and more, rotating all of them to the field's frame
-                // measurably slowed decisions, and few are needed.
+                // In games of 20 against 20 or more, rotating all of them to the field's frame
+                // measurably slowed down decisions, and only few are needed.
                 velocity: Velocity::Body(velocity),
                 psi_rad: mate.nav.psi_rad,
                 yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
@@ -195,9 +195,9 @@ impl TeamView {
             .find(|boat| boat.vehicle == vehicle)
     }
 
-    /// The position of a boat of the team now, and its velocity along its axes. Fixes drop out for
-    /// seconds, and links are silent; headings do not drop out, and the last position is one that
-    /// the boat has left.
+    /// The current position of a boat of the team, and its velocity along its axes. Fixes drop out
+    /// for seconds, and links fall silent; headings do not drop out, and the boat has left its last
+    /// position.
     fn reckoned(&mut self, boat: &OwnBoat, now: SimTime) -> (Ned, Body) {
         let i = boat.vehicle.index();
         let fix = boat.fix_ns;
@@ -222,7 +222,7 @@ impl TeamView {
         (boat.nav.at() + track.gone, track.velocity)
     }
 
-    /// Prepares for many questions about many boats.
+    /// Prepares for many queries about many boats.
     fn sort(&mut self) {
         self.rows.clear();
         if self.boats.len() <= FEW {
@@ -236,10 +236,10 @@ impl TeamView {
             .sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.east.total_cmp(&b.1.east)));
     }
 
-    /// Calls `each` with the index of every boat within this distance of a place and their distance,
-    /// m, in any order.
+    /// Calls `each` with the index and the distance (m) of every boat within this distance of a
+    /// place, in any order.
     pub(super) fn near(&self, at: Ned, reach_m: f64, mut each: impl FnMut(usize, f64)) {
-        // Without a square root for those that are far away.
+        // No square root for boats that are far away.
         let far_m2 = reach_m * reach_m * (1.0 + 1e-9);
         let mut look = |i: usize, there: Ned| {
             let squared = at.distance_squared(there);
@@ -265,8 +265,8 @@ impl TeamView {
         }
     }
 
-    /// Notes which enemies have tagged a boat of the team, and so cannot tag again for a while, and
-    /// which boats are out of action.
+    /// Records which enemies have tagged a boat of the team, and so cannot tag again for a while,
+    /// and which boats are out of action.
     fn note_events(&mut self, picture: &Picture) {
         for logged in picture.events.iter().filter_map(EventRecord::logged) {
             match logged.event {
@@ -286,15 +286,15 @@ impl TeamView {
         }
     }
 
-    /// The interception pairs that follow these.
+    /// The interception pairs that follow from these.
     pub(super) fn pairs_after(&self, before: &Arc<[Pair]>) -> Arc<[Pair]> {
         let mut known = self
             .pairings
             .0
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        // Boats of a team that have asked at the same decisions have the same pairs. One that has
-        // not, because it was tagged, gets its own until they are the same again.
+        // Boats of a team that asked at the same decisions have the same pairs. A boat that did
+        // not, because it was tagged, gets its own pairs until they agree again.
         let same = known
             .iter()
             .find(|[other, _]| Arc::ptr_eq(other, before) || other == before);
@@ -323,9 +323,9 @@ impl TeamView {
                 (flag.distance_squared(boat.at), intruder)
             })
             .collect();
-        // By the flag nearest to each intruder, not the one nearest to a boat, so that all boats of
-        // the team find the same order. By their distance to the flag in the whole team's
-        // knowledge, so that every mate computes the same pairs.
+        // Order by distance to the flag nearest to each intruder, not nearest to a boat, and use
+        // the whole team's knowledge, so that all boats of the team compute the same order and
+        // pairs.
         intruders.sort_by(|a, b| a.0.total_cmp(&b.0));
         let intruders: Vec<Intruder> = intruders.into_iter().map(|(_, boat)| boat).collect();
         let own = self.boats[..self.own].iter();
@@ -344,7 +344,7 @@ impl TeamView {
 }
 
 impl OtherBoat {
-    /// Its position and velocity extrapolated through a brief continued turn.
+    /// The boat's position and velocity, extrapolated through a brief continued turn.
     pub(crate) fn turning_on(&self) -> MovingPoint {
         self.turned.unwrap_or_else(|| {
             let here = MovingPoint {
@@ -355,7 +355,7 @@ impl OtherBoat {
         })
     }
 
-    /// Whether it is an enemy on the team's own side that is not tagged.
+    /// Whether the boat is an untagged enemy on the team's own side.
     pub(super) fn is_intruder(&self) -> bool {
         self.is_enemy && !self.tagged && self.intrudes
     }
@@ -365,8 +365,8 @@ fn row(north_m: f64) -> i64 {
     (north_m / ROW_M).floor() as i64
 }
 
-/// The estimated position and velocity of a contact now: constant velocity, then slowing down, then
-/// at rest.
+/// The estimated current position and velocity of a contact: constant velocity, then slowing down,
+/// then at rest.
 fn dead_reckoned(contact: &Contact, now: SimTime) -> (Ned, Ned) {
     let seen = Ned {
         north: contact.north_m,

@@ -6,7 +6,7 @@ use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use primitives::frame::{Body, Rotation, ned_from_body};
 
-/// A boat is assumed to keep turning for this long, s.
+/// How long a boat is assumed to keep turning, s.
 const TURNS_ON_S: f64 = 2.0;
 /// Upper bound of the assumed turn, rad.
 const TURN_MAX_RAD: f64 = 1.5;
@@ -22,7 +22,7 @@ pub(super) struct TurnEstimate {
 }
 
 impl TurnEstimate {
-    /// The estimate updated with the contact's present state.
+    /// The estimate, updated with the contact's current state.
     pub(super) fn seen(before: Option<TurnEstimate>, contact: &Contact) -> TurnEstimate {
         let seen = contact.seen_ns;
         let psi_rad = contact.psi_rad;
@@ -33,8 +33,8 @@ impl TurnEstimate {
                 yaw_rate_rad_s: 0.0,
             };
         };
-        // A contact shown again unchanged was not observed again: it would appear to have stopped
-        // turning.
+        // A contact shown again unchanged was not observed again; counting it would make the
+        // contact appear to have stopped turning.
         if seen <= before.seen {
             return before;
         }
@@ -59,7 +59,7 @@ impl TurnEstimate {
     }
 }
 
-/// The straight-line equivalent of a boat with this yaw rate, rad/s: its position and velocity
+/// The straight-line equivalent of a boat with this yaw rate (rad/s): its position and velocity
 /// after a brief continued turn.
 pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint {
     let turn_rad = (yaw_rate_rad_s * TURNS_ON_S).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
@@ -147,7 +147,7 @@ mod tests {
             carrying: -1,
         };
         let mut turn = TurnEstimate::seen(None, &contact(0, 3.0));
-        // Through south, where headings wrap, each shown twice.
+        // Through south, where headings wrap, with each heading shown twice.
         for ms in (100..5_000).step_by(100) {
             let psi_rad = primitives::angle::wrap_pi(3.0 + 0.3 * 0.001 * ms as f64);
             for _ in 0..2 {

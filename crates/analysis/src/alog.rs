@@ -29,7 +29,7 @@ const SHORESIDE: &str = "shoreside";
 /// The source of all rows.
 const SOURCE: &str = "squall";
 
-/// Limit of files open at a time. For more boats, the recording is read in several passes.
+/// Maximum number of files open at a time. For more boats, the recording is read in several passes.
 const FILES_MAX: usize = 100;
 
 /// Opens the file of the shoreside or of a boat, by name.
@@ -57,11 +57,11 @@ struct Vehicle {
     before: Option<Sample>,
 }
 
-/// Writes the log of the shoreside and, if wanted, those of the vehicles in order. Returns their
-/// number and the damaged messages.
+/// Writes the log of the shoreside and, if wanted, those of the vehicles in order. Returns the
+/// number of logs and the damaged messages.
 ///
 /// # Errors
-/// Those of `open` and of the files that it returns.
+/// Errors of `open` and of the files that it returns.
 pub fn write(
     recording: &Recording,
     wants_vehicles: bool,
@@ -286,8 +286,8 @@ impl Log {
     }
 }
 
-/// A node report of the boat in this place: comma-separated `key=value`, `TIME` in seconds. `TYPE`
-/// is the shape that viewers draw.
+/// A node report of the boat at this index: comma-separated `key=value` pairs, with `TIME` in
+/// seconds. `TYPE` is the shape that viewers draw.
 pub fn node_report(
     scenario: &Scenario,
     (place, nav): (usize, &Nav),
@@ -310,7 +310,7 @@ pub fn node_report(
     )
 }
 
-/// Writes an event under the names used by the referees of the Aquaticus test-bed, and again as
+/// Writes an event under the names used by the referees of the Aquaticus test-bed, and once more as
 /// `SQUALL_EVENT`.
 fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Result<()> {
     let at_s = event.at_s;
@@ -358,7 +358,7 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Res
     log.row(at_s, "SQUALL_EVENT", &text)
 }
 
-/// The current activity of a boat, which viewers show beside it.
+/// The current activity of a boat, which viewers show next to it.
 fn mode(sample: &Sample) -> &'static str {
     match sample {
         Sample { nav_lost: true, .. } => "LOST",

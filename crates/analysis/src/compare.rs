@@ -155,7 +155,7 @@ fn names(boats: &[BoatSeries]) -> String {
         .join(", ")
 }
 
-/// Other differences, so that they are not attributed to the boats.
+/// Other differences between the games, so that they are not attributed to the boats.
 fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
     let [one, other] = heads.map(|header| &header.info.scenario);
     let mut notes = vec![];
@@ -231,7 +231,7 @@ fn named_events((series, scenario): (&GameSeries, &Scenario)) -> Vec<EventOutcom
         .collect()
 }
 
-/// The attributes of an event, apart from its time, that must match.
+/// The attributes of an event, other than its time, that must match.
 type Kind = (String, Option<String>, Option<String>, Option<String>);
 
 fn kind(event: &EventOutcome) -> Kind {
@@ -243,8 +243,8 @@ fn kind(event: &EventOutcome) -> Kind {
     )
 }
 
-/// Pairs the events of each kind in order. If two are too far apart in time, the earlier one has no
-/// match, because all following events on the other side are later still.
+/// Pairs the events of each kind in order. If the times of two differ too much, the earlier one has
+/// no match, because all following events on the other side are later still.
 fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> EventDifference {
     let mut counts: BTreeMap<String, [u32; 2]> = BTreeMap::new();
     let mut kinds: BTreeMap<Kind, [Vec<EventOutcome>; 2]> = BTreeMap::new();
@@ -275,7 +275,7 @@ fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> Eve
         only_in_a.extend(of_a);
         only_in_b.extend(of_b);
     }
-    // After the end of the shorter game, no event is counted as missing.
+    // Events after the end of the shorter game are not counted as missing.
     for only in [&mut only_in_a, &mut only_in_b] {
         only.retain(|event: &EventOutcome| event.at_s <= until_s);
         only.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));

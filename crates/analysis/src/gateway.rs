@@ -54,7 +54,7 @@ pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
 
 /// The gateway of a boat, from the recording of a game or of the gateway itself.
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
-    // A gateway's recording starts with the gateway, which starts disarmed.
+    // A gateway's recording begins when the gateway starts, which is disarmed at first.
     let state = (bag.kind == Kind::Gateway).then(|| "disarmed".to_owned());
     let mut gateway = Gateway {
         boat: boat.to_owned(),
@@ -62,8 +62,8 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
         ..Gateway::default()
     };
     traffic(bag, &mut gateway);
-    // Each status lists the failsafes so far, and a restarted gateway starts over: count each one
-    // once.
+    // Each status lists all failsafes so far, and a restarted gateway starts a new list: count each
+    // failsafe once.
     for message in bag.on(&format!("status/{boat}")) {
         let Some(status) = gateway.damaged.sound(message.read_json::<GatewayStatus>()) else {
             continue;
@@ -82,7 +82,7 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
         };
         if let Some(state) = event["event"]["state"]["to"].as_str() {
             gateway.state = Some(state.to_owned());
-            // It has no status that lists them.
+            // The recording has no status that lists them.
             if let Some(cause) = state
                 .strip_prefix("failsafe: ")
                 .filter(|_| bag.kind == Kind::Gateway)

@@ -22,7 +22,7 @@ impl HullRectangle {
         0.5 * (self.length_m * ahead + self.beam_m * starboard)
     }
 
-    /// Whether it overlaps another: no side of either is a separating axis.
+    /// Whether this rectangle overlaps `other`: no side of either is a separating axis.
     pub fn overlaps(&self, other: &HullRectangle) -> bool {
         let line = other.pose.at - self.pose.at;
         let axes = [self.pose.rotation(), other.pose.rotation()]
@@ -54,7 +54,7 @@ mod tests {
             ("bow to stern, touching", hull(1.99, 0.0, 0.0), true),
             ("a bow at the side, apart", hull(0.0, 1.51, 90.0), false),
             ("a bow at the side, touching", hull(0.0, 1.49, 90.0), true),
-            // Its corner reaches 1.5 / sqrt(2) = 1.06 m from its centre.
+            // The corner is 1.5 / sqrt(2) = 1.06 m from its centre.
             ("a corner at the side, apart", hull(0.0, 1.57, 45.0), false),
             (
                 "a corner at the side, touching",

@@ -2,9 +2,9 @@
 //! game.
 //!
 //! All results are computed from a [`recording::Recording`]. [`for_each_step`] yields the game
-//! decision by decision, so that [`Summary`] (as text), [`table`] (of single topics) and
+//! decision by decision, so that [`Summary`] (for display), [`table`] (of single topics) and
 //! [`alog`] (for MOOS) need no more memory for a longer game. [`GameSeries`] holds the game as time
-//! series, thinned out if long, for plots and for [`Comparison`] of a game on the water with its
+//! series, downsampled if long, for plots and for [`Comparison`] of a game on the water with its
 //! simulation. [`quality`] measures how sensibly boats play, from the steps of a recording or of a
 //! running game. [`gateway_of`] reports the link traffic in a gateway's own recording.
 

@@ -1,6 +1,6 @@
 //! Splits the bytes of a link into lines, per direction.
 
-/// A line of this length is returned even if it has not ended, bytes: no sentence is that long.
+/// A line of this length (bytes) is returned even if it has not ended: no sentence is that long.
 const LONGEST: usize = 1024;
 
 /// A line on a link.
@@ -24,7 +24,7 @@ impl Line {
     }
 }
 
-/// Assembles lines from pieces.
+/// Assembles lines from chunks.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     /// Incomplete lines: inward, outward.

@@ -6,7 +6,7 @@ use messages::picture::Nav;
 use primitives::math;
 use std::f64::consts::TAU;
 
-/// A game with samples every 0.1 s up to `span_s`, in which one boat moves as `at` says.
+/// A game with samples every 0.1 s up to `span_s`, in which one boat moves as given by `at`.
 pub(crate) fn game(span_s: f64, at: impl Fn(f64) -> Sample) -> GameSeries {
     let times_s: Vec<f64> = (0..=(span_s * 10.0).round() as usize)
         .map(|i| i as f64 / 10.0)

@@ -1,8 +1,8 @@
 //! Quantiles of any number of values in bounded memory, accurate to one part in 128.
 //!
 //! Values are counted in bins of equal ratio, as in `HdrHistogram` (Tene) and `DDSketch` (Masson,
-//! Rim and Lee, PVLDB 12, 2019). The bits of non-negative numbers sort like the numbers, so the
-//! exponent and the leading bits of the mantissa identify the bin.
+//! Rim and Lee, PVLDB 12, 2019). The bit patterns of non-negative numbers sort like the numbers, so
+//! the exponent and the leading bits of the mantissa identify the bin.
 
 use std::collections::BTreeMap;
 
@@ -33,8 +33,8 @@ impl Quantile {
         self.count += 1;
     }
 
-    /// The quantile at this fraction of the values, by nearest rank; up to one part in 128 too
-    /// large. None without values.
+    /// The quantile at this fraction of the values, by nearest rank; at most one part in 128 too
+    /// large. `None` without values.
     pub(crate) fn at(&self, share: f64) -> Option<f64> {
         let rank = ((share * self.count as f64).ceil() as u64).max(1);
         let mut reached = 0;

@@ -8,7 +8,7 @@ use primitives::angle::wrap_pi;
 use primitives::frame::{Rotation, body_from_ned};
 use serde::{Deserialize, Serialize};
 
-/// A boat's response to its orders. Values that the game cannot determine are none.
+/// A boat's response to its orders. Values that cannot be determined from the game are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Response {
     /// Heading delay, s: the delay at which heading and order agree best.
@@ -29,12 +29,13 @@ pub struct Response {
 
 /// The longest delay considered, s.
 const LAG_MAX_S: f64 = 10.0;
-/// Time from a hold order until a boat no longer glides, s.
+/// Time after a hold order until a boat has stopped gliding, s.
 pub const SETTLED_S: f64 = 10.0;
-/// Orders with a smaller standard deviation than this do not determine a delay, m/s.
+/// Minimum standard deviation of the ordered speed to determine a delay, m/s.
 const VARIES_M_S: f64 = 0.05;
 const VARIES_RAD: f64 = 0.05;
-/// Nor do speeds with a smaller correlation than this: the search would still find a best delay.
+/// Minimum correlation to determine a delay: the search would find a best delay even for unrelated
+/// speeds.
 const CORRELATED: f64 = 0.5;
 /// The minimum number of samples.
 const SAMPLES_MIN: usize = 100;
@@ -89,8 +90,7 @@ pub(crate) fn response(series: &GameSeries, boat: &BoatSeries) -> Response {
     }
 }
 
-/// For each sample, the end of its uninterrupted stretch of steering; 0 if the boat was not
-/// steered.
+/// For each sample, the end of its uninterrupted run of steering; 0 if the boat was not steered.
 fn run_ends(samples: &[Sample]) -> Vec<usize> {
     let mut ends = vec![0; samples.len()];
     let mut end = samples.len();
@@ -137,7 +137,7 @@ fn correlation(pairs: &[OrderAndAnswer]) -> Option<f64> {
     (coefficient >= CORRELATED).then_some(coefficient)
 }
 
-/// Whether there are enough orders with enough variation.
+/// `Some` if there are enough orders with enough variation.
 fn varies(pairs: &[OrderAndAnswer], least: f64) -> Option<()> {
     let count = pairs.len() as f64;
     let mean = pairs.iter().map(|t| t.0).sum::<f64>() / count;
@@ -204,7 +204,7 @@ mod tests {
     use messages::picture::Nav;
     use std::f64::consts::TAU;
 
-    /// Orders that oscillate, and a boat that follows with this delay and speed gain.
+    /// Oscillating orders, and a boat that follows with this delay and speed gain.
     fn late(lag_s: f64, gain: f64) -> GameSeries {
         let heading_rad =
             |time_s: f64| 3.0 + 0.8 * primitives::math::sin_cos(TAU * time_s / 40.0).0;

@@ -1,4 +1,4 @@
-//! A recorded game as time series for plots and comparisons; long games are thinned to every nth
+//! A recorded game as time series for plots and comparisons; long games are reduced to every nth
 //! decision.
 
 use crate::step::{Sample, Step, for_each_step};
@@ -7,13 +7,14 @@ use recording::{Damaged, Recording};
 use rules::event::Logged;
 use scenario::Source;
 
-/// Limit of samples of all boats together, about 160 bytes each. Longer games are thinned out.
+/// Maximum number of samples of all boats together, about 160 bytes each. Longer games are
+/// downsampled.
 const SAMPLES_MAX: usize = 1_000_000;
 
 /// A game as time series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GameSeries {
-    /// The thinning factor: every nth decision is included, and the last.
+    /// The downsampling factor: every nth decision is included, and the last.
     pub every: usize,
     /// Times of the samples, s.
     pub times_s: Vec<f64>,
@@ -55,7 +56,7 @@ impl GameSeries {
         GameSeries::of_at_most(recording, SAMPLES_MAX)
     }
 
-    /// The same, thinned out to at most this many samples of all boats together, plus the last
+    /// The same, downsampled to at most this many samples of all boats together, plus the last
     /// decision.
     pub fn of_at_most(recording: &Recording, samples_max: usize) -> GameSeries {
         let scenario = recording.scenario();

@@ -17,7 +17,7 @@ pub struct BoatStatistics {
     pub team: String,
     /// Whether it is a real boat. Its true state is then its gateway's report.
     pub is_real: bool,
-    /// Length of its track, m, with straight segments between decisions.
+    /// Length of its track (m), with straight segments between decisions.
     pub distance_m: f64,
     /// Mean speed over the ground, m/s.
     pub speed_mean_m_s: f64,
@@ -58,7 +58,7 @@ pub struct SteeringError {
     pub heading_rms_deg: f64,
     /// Error of the speed ahead, root mean square, m/s.
     pub speed_rms_m_s: f64,
-    /// Time in which this was measured, s.
+    /// Duration of this measurement, s.
     pub steered_s: f64,
 }
 
@@ -198,13 +198,13 @@ impl MeanSquare {
         (self.sum, self.count) = (self.sum + number * number, self.count + 1);
     }
 
-    /// Its square root; none without numbers.
+    /// The square root of the mean; `None` without values.
     fn root(self) -> Option<f64> {
         (self.count > 0).then(|| (self.sum / self.count as f64).sqrt())
     }
 }
 
-/// The root mean square; none without numbers.
+/// The root mean square; `None` without values.
 pub(crate) fn rms(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut mean = MeanSquare::default();
     numbers.for_each(|number| mean.add(number));

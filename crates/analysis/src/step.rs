@@ -30,7 +30,7 @@ pub struct Sample {
     pub truth: Nav,
     /// Its estimated navigation, from the picture of that decision.
     pub estimated: Option<Nav>,
-    /// The order that led here: the last one sent before.
+    /// The order in force during this step: the last one sent before it.
     pub order: Order,
     /// Thrust of the port and starboard thrusters, N.
     pub thrusts_newton: [f64; 2],
@@ -50,8 +50,8 @@ pub struct Sample {
 }
 
 impl Step {
-    /// The decision in a frame, with the orders that led there, by vehicle. Estimated navigation is
-    /// not included.
+    /// The decision in a frame, with the orders that preceded it, by vehicle. Estimated navigation
+    /// is not included.
     pub fn of_frame(
         scenario: &Scenario,
         frame: &Frame,
@@ -71,7 +71,7 @@ impl Step {
     }
 }
 
-/// Passes every decision of a recording to `take`, holding one at a time in memory. Damaged
+/// Passes every decision of a recording to `take`, with only one in memory at a time. Damaged
 /// messages are skipped and counted.
 pub fn for_each_step(recording: &Recording, take: impl FnMut(Step)) -> Damaged {
     let scenario = recording.scenario();
@@ -102,7 +102,7 @@ pub fn for_each_step(recording: &Recording, take: impl FnMut(Step)) -> Damaged {
 }
 
 impl Sample {
-    /// The ordered heading, rad, and speed, m/s, if it was steered.
+    /// The ordered heading (rad) and speed (m/s), if the boat was steered.
     pub fn steered(&self) -> Option<(f64, f64)> {
         match self.order {
             Order::Steer {
@@ -119,7 +119,7 @@ impl Sample {
     }
 }
 
-/// The ordered speed, m/s; unknown for thrusts.
+/// The ordered speed, m/s; unknown for thrust orders.
 pub fn ordered_m_s(order: Order) -> Option<f64> {
     match order {
         Order::Hold => Some(0.0),
@@ -132,12 +132,12 @@ pub fn ordered_m_s(order: Order) -> Option<f64> {
 struct Reader<'a, T> {
     scenario: &'a Scenario,
     take: T,
-    /// The decision whose pictures may still follow: they are recorded after its frame and before
+    /// The decision whose pictures may still follow: pictures are recorded between its frame and
     /// the next.
     open: Option<Step>,
     /// Time of the last frame, s.
     now_s: Option<f64>,
-    /// Orders in force with the time of the picture that each answers, by vehicle index.
+    /// Orders in force, each with the time of the picture that it answers, by vehicle index.
     orders: Vec<(Order, SimTime)>,
 }
 
@@ -197,7 +197,7 @@ impl<T: FnMut(Step)> Reader<'_, T> {
         Ok(())
     }
 
-    /// Drops orders whose picture is too old when the decision is played.
+    /// Drops orders whose picture is too old at the time of the decision.
     fn expire_orders(&mut self) {
         let Some(now_s) = self.now_s else { return };
         for (order, given_at) in &mut self.orders {

@@ -8,7 +8,7 @@ use scenario::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Messages within a shorter time than this have no rate, s.
+/// Minimum time between the first and the last message to compute a rate, s.
 const RATE_OVER_MIN_S: f64 = 0.1;
 
 /// A one-page summary of a game.
@@ -22,7 +22,7 @@ pub struct Summary {
     pub seed: u64,
     /// The version of Squall that played it.
     pub version: String,
-    /// The commit it was built from.
+    /// The commit from which the program was built.
     pub commit: String,
     /// The pace.
     pub pace: String,
@@ -34,7 +34,7 @@ pub struct Summary {
     pub wall_s: f64,
     /// Whether the file is truncated.
     pub is_cut: bool,
-    /// Messages dropped because the disk was too slow; none if the file is truncated.
+    /// Messages dropped because the disk was too slow; `None` if the file is truncated.
     pub dropped: Option<u64>,
     /// Damaged messages, excluded from all other values.
     pub damaged: Damaged,
@@ -42,9 +42,9 @@ pub struct Summary {
     pub bytes: u64,
     /// Points by team, at the end of the file.
     pub score: BTreeMap<String, u32>,
-    /// The winning team; none for a draw or a truncated file.
+    /// The winning team; `None` for a draw or a truncated file.
     pub winner: Option<String>,
-    /// The digest of the game; none if the file is truncated.
+    /// The digest of the game; `None` if the file is truncated.
     pub digest: Option<String>,
     /// All events, in order.
     pub events: Vec<EventOutcome>,
@@ -63,8 +63,8 @@ pub struct Topic {
     pub count: u64,
     /// Their total size, bytes.
     pub bytes: u64,
-    /// Messages per simulated second, from the first to the last; none if these are less than a
-    /// tenth of a second apart.
+    /// Messages per simulated second, from the first to the last; `None` if less than a tenth of a
+    /// second lies between these.
     pub rate_hz: Option<f64>,
 }
 

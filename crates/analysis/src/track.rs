@@ -23,7 +23,8 @@ pub struct TrackDifference {
 /// Maximum points per track: time grows with their product, memory with their sum.
 const SHAPE_POINTS: usize = 2000;
 
-/// Distance between the boats of two games in their common time; none without a common sample.
+/// Distance between a boat's tracks in two games in their common time; `None` without a common
+/// sample.
 pub(crate) fn apart(
     (a, in_a): (&GameSeries, &BoatSeries),
     (b, in_b): (&GameSeries, &BoatSeries),
@@ -40,7 +41,7 @@ pub(crate) fn apart(
     let track_b: Vec<Ned> = in_b.track().collect();
     let distance_m =
         |(time_s, at): (&f64, &Ned)| at.distance(place_at(&b.times_s, &track_b, *time_s));
-    // At the samples of the first.
+    // At the samples of the first game.
     let distances_m: Vec<f64> = times_s.iter().zip(&common_a).map(distance_m).collect();
     let final_m = *distances_m.last()?;
     Some(TrackDifference {
@@ -64,7 +65,7 @@ fn place_at(times_s: &[f64], track: &[Ned], time_s: f64) -> Ned {
     } else {
         1.0
     };
-    // This weighted sum gives each sample's own position exactly.
+    // This weighted sum yields each sample's own position exactly.
     track[before].scaled(1.0 - share) + track[after].scaled(share)
 }
 

@@ -1,6 +1,6 @@
 //! Whole Squall games in one process: no network, no clock.
 //!
-//! Uses the same world and minds as across processes, and produces the same bytes.
+//! The world and the minds are the same as across processes, and so are the resulting bytes.
 
 use agent::{Mind, MindRunner};
 use primitives::VehicleId;
@@ -31,8 +31,8 @@ pub fn play_watched(
     play_observed(scenario, minds, seed, |contest, _| watch(contest))
 }
 
-/// Like [`play_watched`], but also shows the minds, in the state that led there. Errors and panics
-/// are those of [`play`].
+/// Like [`play_watched`], but also passes the minds, in the state after their last decision. Errors
+/// and panics are those of [`play`].
 pub fn play_observed(
     scenario: &Scenario,
     minds: Vec<Box<dyn Mind>>,

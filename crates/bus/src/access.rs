@@ -1,13 +1,13 @@
 //! The rights of other nodes at a hub: the rules for zenoh's access control.
 //!
 //! Everything that no rule allows is denied. The rules bind nodes linked to the hub, not the hub's
-//! own session. Actions reserved for the sim therefore need no rule: publish pictures and gateway
-//! reports, answer its own queries, show the sim's liveliness token, and receive orders, navigation
+//! own session. Therefore no rule covers the sim's own actions: publishing pictures and gateway
+//! reports, answering its queries, declaring its liveliness token, and receiving orders, navigation
 //! and reports. Without keys, all other nodes have the same rights; with keys, each has the rights
 //! of its role.
 //!
 //! Topics that the hub forwards are spelled out here; nodes cannot invent them. zenoh 1.10 panics,
-//! and takes the sim with it, if it has to send a key of more than 65535 bytes.
+//! which kills the sim, if it has to send a key of more than 65535 bytes.
 
 use crate::keys::Identity;
 use messages::topic::{self, GameName};
@@ -15,7 +15,7 @@ use scenario::{Scenario, Vehicle};
 use serde_json::{Value, json};
 
 /// The rights of a node, as topic patterns. `{team}` expands to each of its teams, `{boat}` to each
-/// of its boats. Only topics that the sim alone receives may have wildcards.
+/// of its boats. Only topics received by the sim alone may have wildcards.
 struct Rights {
     publishes: &'static [&'static str],
     hears: &'static [&'static str],
@@ -26,8 +26,8 @@ struct Rights {
 /// Any node that reaches a hub without keys.
 const ANYBODY: Rights = Rights {
     publishes: &[
-        // All levels below, not just one: without keys the team in the key proves nothing, and the
-        // sim checks the ticket of each order anyway.
+        // All levels below, not just one: without keys, the team in the topic proves nothing, and
+        // the sim checks the ticket of each order anyway.
         "order/**",
         "say/{team}",
         "policy/{boat}",
@@ -38,7 +38,7 @@ const ANYBODY: Rights = Rights {
         "report/link/{boat}",
         "control",
         // Anyone who sees danger must be able to stop boats without a secret: without a token and,
-        // with keys, in any role.
+        // in games with keys, in any role.
         "stop/{boat}",
     ],
     hears: &[
@@ -107,8 +107,8 @@ const GATEWAY: Rights = Rights {
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
-// Receives everything published and the decisions of helms, and may stop boats like every node, but
-// changes nothing else.
+// Receives everything that is published and the decisions of helms, and may stop boats like every
+// node, but may change nothing else.
 const OBSERVER: Rights = Rights {
     publishes: &["control", "stop/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}"],
@@ -148,8 +148,8 @@ fn rights(identity: &Identity) -> &'static Rights {
 
 /// Whether a node may query `key` at all; without the right, it never gets a reply.
 pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
-    // Checks only the kind, so that a node without the right does not wait for a reply. The hub's
-    // rule, with topics spelled out, is binding.
+    // Check only the kind of topic, so that a node without the right does not wait for a reply. The
+    // hub's rule, with topics spelled out, is binding.
     let kind = key.split('/').nth(2);
     rights(identity)
         .asks
@@ -219,14 +219,14 @@ impl Subject {
                 self.keys(game, answers),
             ),
             (&["query"], &["egress"], self.keys(game, answers)),
-            // Subscriptions and queryables here are no secret: publishers must know them.
+            // Subscriptions and queryables are not secret: publishers must know them.
             (
                 &["declare_subscriber", "declare_queryable"],
                 &["egress"],
                 vec![topic::matching(game, "**")],
             ),
-            // Outward only: a token that another node shows in the sim's name would be believed.
-            // Agents and gateways show none for the same reason; the hub sees their links.
+            // Outward only: a token declared by another node in the sim's name would be believed.
+            // Agents and gateways declare none for the same reason; the hub sees their links.
             (
                 &["liveliness_token"],
                 &["egress"],
@@ -293,7 +293,7 @@ fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
             &own,
         ));
     }
-    // Keys may exist for one gateway per boat, or for one machine that runs all gateways.
+    // There may be keys for one gateway per boat, or for one machine that runs all gateways.
     let externals = names(
         scenario
             .externals()
@@ -330,8 +330,8 @@ pub(crate) fn control(game: &GameName, scenario: &Scenario, has_keys: bool) -> V
         }
     };
     json!({
-        // Deny by default: whatever a later zenoh adds or a node invents stays closed until a rule
-        // above opens it.
+        // Deny by default: anything that a later zenoh adds or a node invents stays closed until a
+        // rule above opens it.
         "enabled": true, "default_permission": "deny", "rules": rules,
         "subjects": all.iter().map(subject).collect::<Vec<Value>>(), "policies": policies,
     })

@@ -1,8 +1,8 @@
 //! Keeps a hub's port open for new nodes, however many other connections there are.
 //!
-//! A connection is pending until zenoh has made it a link. Pending connections are limited: a
-//! newcomer beyond the limit ends another one, chosen by the rule of [`Connections`]. zenoh's TLS
-//! listener (1.10, `tls-listener` 0.11) needs more than that: once the process has run out of file
+//! A connection is pending until zenoh has made it a link. The number of pending connections is
+//! limited: a newcomer beyond the limit ends an older one, chosen as in [`Connections`]. zenoh's
+//! TLS listener (1.10, `tls-listener` 0.11) needs more: once the process has run out of file
 //! descriptors, the listener only tries to accept and closes none of its connections, so it would
 //! never recover. When descriptors run short, the port is closed briefly and the reserved
 //! descriptors are lent to connections accepted already. The listener then has nothing more to
@@ -20,7 +20,7 @@ use zenoh::sample::SampleKind;
 use zenoh::session::LinkEvent;
 use zenoh::{Session, Wait};
 
-/// How often the port is checked, and how often while many connections are pending.
+/// Interval at which the port is checked, and interval while many connections are pending.
 const POLL: Duration = Duration::from_millis(100);
 const LOOK_OFTEN: Duration = Duration::from_millis(10);
 
@@ -55,7 +55,7 @@ pub(crate) fn begin(
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
             // Identified by both addresses, since descriptors are reused: the same number may now
-            // be another connection.
+            // be a different connection.
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };
@@ -68,8 +68,8 @@ pub(crate) fn begin(
         .wait()?;
     let waiting = Connections::new(waiting_max);
     let listeners = listeners(&numbers);
-    // Connections already accepted by the system must fit into the reserved descriptors, beside
-    // those still on loan.
+    // Connections already accepted by the system must fit into the reserved descriptors, together
+    // with those still on loan.
     let queue_max = i32::try_from(files.kept() / 4).unwrap_or(i32::MAX);
     for listener in &listeners {
         // `listen` on a listening socket only changes the length of its queue.
@@ -124,7 +124,7 @@ impl Port {
                 found.insert(ends, descriptor);
             }
         }
-        // Connections that have become links in the meantime are known by now.
+        // By now, connections that have since become links are known.
         let links = links.lock().clone();
         let lent: Vec<(Ends, RawFd)> = found
             .iter()
@@ -132,7 +132,7 @@ impl Port {
             .filter(|it| is_lent(it.1))
             .collect();
         // Lent descriptors return before the port opens, because the next flood needs them. A node
-        // whose link holds one reconnects.
+        // whose link holds one has to reconnect.
         let are_too_many = lent.len() as u64 > self.files.kept() / 4;
         self.close(free < self.files.kept() / 2 || are_too_many);
         let goes = |ends: &Ends| self.is_closed && (are_too_many || !links.contains(ends));
@@ -143,7 +143,7 @@ impl Port {
         self.slots.retain(|ends, _| found.contains_key(ends));
         for (ends, descriptor) in found {
             // Mapped IPv4 addresses count as IPv4; otherwise one host would have two allowances on
-            // the port.
+            // this port.
             let admit = || {
                 self.waiting.admit(ends.1.ip().to_canonical(), move || {
                     descriptor::end(descriptor, ends)
@@ -183,11 +183,11 @@ fn listeners(ports: &[u16]) -> Vec<RawFd> {
         .collect()
 }
 
-/// Makes the system drop packets for a listener, or stops that. A client's TCP retries after a
-/// second.
+/// Makes the system drop packets for a listener, or accept them again. A client's TCP retries after
+/// a second.
 #[cfg(target_os = "linux")]
 fn filter(listener: RawFd, is_closed: bool) {
-    /// `BPF_RET | BPF_K` of classic BPF (`linux/bpf_common.h`) with zero: accepts no byte of the
+    /// `BPF_RET | BPF_K` of classic BPF (`linux/bpf_common.h`) with zero: accepts no bytes of the
     /// packet.
     const DROP: [socket2::SockFilter; 1] = [socket2::SockFilter::new(0x06, 0, 0, 0)];
     let change = |socket: &socket2::SockRef<'_>| {
@@ -201,6 +201,6 @@ fn filter(listener: RawFd, is_closed: bool) {
     drop(descriptor::with_socket(listener, change));
 }
 
-/// Other systems have no such filter; there a flood takes longer to clear.
+/// Other systems have no such filter, so a flood takes longer to clear.
 #[cfg(not(target_os = "linux"))]
 fn filter(_listener: RawFd, _is_closed: bool) {}

@@ -1,5 +1,5 @@
-//! A node on the network: publish, subscribe, queries and liveliness tokens, with its token and
-//! keys.
+//! A node on the network: publishing, subscriptions, queries and liveliness tokens, with the node's
+//! token and keys.
 
 use crate::keys::Bundle;
 use crate::net::is_loopback;
@@ -19,24 +19,24 @@ use std::sync::Arc;
 /// accept immediately, and senders repeat those that must arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// Stops of boats: sent immediately, before everything else.
+    /// Stops of boats: sent immediately, before all other messages.
     Urgent,
-    /// Everything sent at every decision.
+    /// All messages sent at every decision.
     Normal,
 }
 
 /// How a QUIC link treats the messages of a publisher. All other links are reliable and in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delivery {
-    /// In order; a lost packet is sent again, and what follows it waits.
+    /// In order; a lost packet is sent again, and the packets after it wait.
     Reliable,
-    /// Each in its own datagram. A lost one is not sent again and does not delay others.
+    /// Each message in its own datagram. A lost one is not sent again and does not delay others.
     Newest,
 }
 
 impl Delivery {
-    /// For messages sent at every decision: in lockstep each message counts, in real time the next
-    /// one replaces it.
+    /// For messages sent at every decision: in lockstep each message counts, whereas in real time
+    /// the next one replaces it.
     pub fn per_decision(is_lockstep: bool) -> Delivery {
         if is_lockstep {
             Delivery::Reliable
@@ -58,7 +58,7 @@ pub struct Bus {
     pub(crate) is_on_this_machine: bool,
 }
 
-/// Operations that need neither token nor keys nor a callback are those of the session itself.
+/// Operations that need neither token, keys nor callback are those of the session itself.
 impl Deref for Bus {
     type Target = dyn Session;
 
@@ -102,7 +102,7 @@ impl Bus {
         }
     }
 
-    /// The same session, for a node with this token.
+    /// The same session, with this token for the node.
     pub fn with_token(self, token: Option<Token>) -> Bus {
         Bus { token, ..self }
     }
@@ -117,7 +117,7 @@ impl Bus {
             .map(Publisher)
     }
 
-    /// Prepares to publish on `key`, with this delivery over QUIC links.
+    /// Prepares to publish on `key` with the given delivery over QUIC links.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -144,7 +144,7 @@ impl Bus {
         self.session.subscribe(key, true, Box::new(receive))
     }
 
-    /// Like [`Bus::subscribe`], but without messages that this session publishes.
+    /// Like [`Bus::subscribe`], but without this session's own messages.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -180,7 +180,7 @@ impl Bus {
     }
 
     /// Calls `receive` with the key of every node under `key` that appears (`true`) or leaves,
-    /// starting with those present.
+    /// starting with the nodes present.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.

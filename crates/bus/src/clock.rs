@@ -20,12 +20,13 @@ pub fn suspended() -> Duration {
     runtime().suspended()
 }
 
-/// Sleeps where no condition can be waited for: between two attempts, or two screen updates.
+/// Sleeps if there is no condition to wait for: between two attempts, or between two screen
+/// updates.
 pub fn rest(time: Duration) {
     runtime().sleep(time);
 }
 
-/// The current time since 1970, ns: for other systems that need it. Squall never compares it.
+/// The current time since 1970, ns, for other systems that need it. Squall never compares it.
 pub fn unix_ns() -> i64 {
     i64::try_from(time::OffsetDateTime::now_utc().unix_timestamp_nanos()).unwrap_or(i64::MAX)
 }

@@ -1,5 +1,5 @@
-//! The open connections of a server with limited slots: a new connection always gets one, from the
-//! connection that has been idle longest.
+//! The open connections of a server with limited slots: a new connection always gets one, if
+//! necessary that of the connection idle longest.
 
 use parking_lot::Mutex;
 use std::collections::BTreeMap;
@@ -17,13 +17,13 @@ pub struct Connections {
 struct Open {
     /// Logical clock of events; the lowest value is the oldest.
     count: u64,
-    /// By number of the slot.
+    /// By slot number.
     connections: BTreeMap<u64, Entry>,
 }
 
 struct Entry {
     from: IpAddr,
-    /// `count` at the last request over it.
+    /// `count` at the last request over the connection.
     used: u64,
     close: Box<dyn FnOnce() + Send>,
 }
@@ -44,8 +44,7 @@ impl Connections {
     }
 
     /// Takes a slot for a connection from this address; `close` ends the connection. If no slot is
-    /// free, it evicts another: of the address with the most connections, the least recently used
-    /// one.
+    /// free, it evicts the least recently used connection of the address with the most connections.
     pub fn admit(&self, from: IpAddr, close: impl FnOnce() + Send + 'static) -> Slot {
         let mut open = self.open.lock();
         let mut surplus = Vec::new();
@@ -69,8 +68,8 @@ impl Connections {
             },
         );
         drop(open);
-        // Outside the lock: closing calls into the connection's owner, which may drop its slot and
-        // so take the lock.
+        // Outside the lock: closing calls the connection's owner, which may drop its slot and so
+        // take the lock.
         surplus.into_iter().for_each(|entry| (entry.close)());
         Slot {
             open: Arc::clone(&self.open),
@@ -94,7 +93,7 @@ impl Open {
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
             // The address with the most connections first: a host that opens thousands evicts its
-            // own, and a host with a single connection keeps it however long it is idle.
+            // own, while a host with a single connection keeps it, however long it is idle.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));
         self.connections
             .iter()
@@ -104,7 +103,7 @@ impl Open {
 }
 
 impl Slot {
-    /// Marks the connection as used by a request.
+    /// Records that a request used the connection.
     pub fn touch(&self) {
         let mut open = self.open.lock();
         open.count += 1;
@@ -152,7 +151,7 @@ mod tests {
         all[0].0.touch();
         all.push(admit(&connections, STRANGER));
         assert_eq!(closed(&all), [false, true, false, false]);
-        // A closed connection frees its slot too.
+        // A closed connection also frees its slot.
         all.remove(2);
         all.push(admit(&connections, STRANGER));
         assert_eq!(closed(&all), [false, true, false, false]);

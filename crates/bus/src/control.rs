@@ -6,7 +6,7 @@ use messages::{Control, ControlReply};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Time for the sim's answer to a stop before the stop is repeated.
+/// Time for the sim to answer a stop before the stop is repeated.
 const STOP_ANSWER: Duration = Duration::from_millis(200);
 
 /// Number of times that a node without the right to query the sim publishes a stop.
@@ -16,7 +16,7 @@ const SAID_UNASKED: u32 = 3;
 type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 
 /// Controls a game. Commands that stop boats are published to all nodes, including gateways, and
-/// need no token; they are repeated until the sim answers, since a link may lose them. Other
+/// need no token; they are repeated until the sim answers, since a link may lose them. All other
 /// commands are queries to the sim.
 ///
 /// # Errors
@@ -29,7 +29,7 @@ pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusEr
     let key = topic::control(game);
     let reply: Option<ControlReply> =
         // Pausing or ending a game can wait for a query and its challenge. A stop is published
-        // immediately and sent as a query too, since published messages may be lost.
+        // immediately and also sent as a query, since published messages may be lost.
         if control.stops() { stop(bus, &key, control)? } else { bus.request(&key, &control, ANSWER)? };
     match reply {
         Some(Ok(())) => Ok(()),
@@ -54,7 +54,7 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
         );
         answered.wait(STOP_ANSWER, Option::is_some);
         match answered.visit(Option::take) {
-            // Observers may stop a game too, but may not query the sim.
+            // Observers may stop a game, too, but may not query the sim.
             Some(Err(BusError::NotAllowed { .. })) if said < SAID_UNASKED => {
                 clock::rest(STOP_ANSWER)
             }
@@ -73,7 +73,7 @@ fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<A
     let key = key.to_owned();
     let answered = Arc::clone(answered);
     // In its own thread: a query blocks until answered or timed out, and the stop must be repeated
-    // in the meantime.
+    // meanwhile.
     let asked = start_thread("stop-question", move || {
         if let Some(reply) = bus.request(&key, &control, limit).transpose() {
             answered.visit(|answered| *answered = Some(reply));

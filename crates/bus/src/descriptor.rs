@@ -1,13 +1,13 @@
-//! The file descriptors of this process. zenoh does not expose its sockets, so they are found here
-//! by their addresses.
+//! The file descriptors of this process. zenoh does not expose its sockets, so they are found by
+//! their addresses.
 
 use socket2::{SockRef, Type};
 use std::io;
 use std::net::{Shutdown, SocketAddr};
 use std::os::fd::{AsRawFd, BorrowedFd, RawFd};
 
-/// Where the system lists the calling process's descriptors: Linux has both, macOS and the BSDs the
-/// second.
+/// Where the system lists the calling process's descriptors: Linux has both folders, macOS and the
+/// BSDs only the second.
 const FOLDERS: [&str; 2] = ["/proc/self/fd", "/dev/fd"];
 
 /// The two ends of a connection: local and peer address.
@@ -24,7 +24,7 @@ pub(crate) enum Kind {
 /// The numbers of all descriptors.
 ///
 /// # Errors
-/// If the system lists none, or no descriptor is left for reading the list.
+/// If the system provides no list, or no descriptor is left to read it.
 pub(crate) fn all() -> io::Result<Vec<RawFd>> {
     // Linux has the first, macOS and the BSDs the second. If neither exists, links keep their
     // linger time and the port keeps zenoh's limits.
@@ -42,9 +42,9 @@ pub(crate) fn all() -> io::Result<Vec<RawFd>> {
 )]
 fn borrow<'a>(descriptor: RawFd) -> BorrowedFd<'a> {
     // SAFETY: the number comes from the system, so it is not -1, and the descriptor is not closed
-    // through this. If another thread closes it meanwhile, calls fail. If its number is reused, the
-    // addresses differ: callers that change the socket compare them first, on a duplicate or while
-    // zenoh keeps the socket open.
+    // through this borrow. If another thread closes it meanwhile, calls fail. If its number is
+    // reused, the addresses differ: callers that change the socket compare them first, on a
+    // duplicate or while zenoh keeps the socket open.
     unsafe { BorrowedFd::borrow_raw(descriptor) }
 }
 
@@ -78,13 +78,12 @@ pub(crate) fn with_socket<T>(descriptor: RawFd, change: impl FnOnce(&SockRef<'_>
 
 /// Ends a connection if the descriptor still belongs to it; the owner notices and closes it.
 pub(crate) fn end(descriptor: RawFd, ends: Ends) {
-    // A duplicate keeps referring to the same socket, although the owner may close the descriptor
-    // at any time.
+    // A duplicate keeps referring to the same socket, even if the owner closes the descriptor.
     let Ok(duplicate) = borrow(descriptor).try_clone_to_owned() else {
         return;
     };
     if matches!(kind(duplicate.as_raw_fd()), Kind::Connection(found) if found == ends) {
-        // It may have ended already.
+        // The connection may have ended already.
         drop(SockRef::from(&duplicate).shutdown(Shutdown::Both));
     }
 }

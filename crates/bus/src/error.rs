@@ -33,7 +33,7 @@ pub enum BusError {
         /// The fault in the answer.
         reason: String,
     },
-    /// The sim refuses, for this reason.
+    /// The sim refuses, for the given reason.
     #[error("refused by the sim: {0}")]
     Refused(String),
     /// The sim does not respond.
@@ -45,7 +45,7 @@ pub enum BusError {
          the environment as SQUALL_TOKEN"
     )]
     NeedsToken,
-    /// The token belongs to another game.
+    /// The token belongs to a different game.
     #[error("wrong token for this game: `squall sim` printed the token when it started")]
     WrongToken,
     /// A node answered without proving that it knows this token.
@@ -59,16 +59,16 @@ pub enum BusError {
     /// This node's keys or the peer's are wrong.
     #[error("{0}")]
     Keys(String),
-    /// A session with keys in a process with more than one zenoh thread: its TLS links are not safe
-    /// there.
+    /// A session with keys in a process with more than one zenoh thread, where its TLS links are
+    /// not safe.
     #[error(
         "a node with keys must be started with ZENOH_RUNTIME={KEYS_RUNTIME} in its environment; {0}"
     )]
     Threads(String),
-    /// The game has keys, and this node has none.
+    /// The game has keys, but this node has none.
     #[error("{0} uses TLS: the game has keys; pass yours with --keys FOLDER (see `squall keys`)")]
     NeedsKeys(String),
-    /// A node with this certificate has no right to this query.
+    /// The certificate of this node gives no right to this query.
     #[error("the keys of {identity} do not allow this: use an operator's keys")]
     NotAllowed {
         /// The identity in the certificate.
@@ -86,7 +86,7 @@ pub enum BusError {
     },
 }
 
-/// zenoh's error, without the source location that it appends and the endpoints that it repeats.
+/// zenoh's error, without the appended source location and the repeated endpoints.
 pub(crate) fn reason(error: &zenoh::Error) -> String {
     let text = error.to_string();
     let text = text

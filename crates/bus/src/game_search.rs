@@ -10,18 +10,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// Interval of a search's attempts.
+/// Interval between the attempts of a search.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// Timeout of a query.
 pub const ANSWER: Duration = Duration::from_secs(2);
 
-/// Why something is missing.
+/// Why a game or a part of it is missing.
 #[derive(Debug, Error)]
 pub enum Missing {
     /// It may appear later.
     #[error("{0}")]
     Yet(String),
-    /// It never will.
+    /// It will never appear.
     #[error(transparent)]
     Forever(#[from] Refusal),
 }
@@ -29,10 +29,10 @@ pub enum Missing {
 /// Why a game cannot be joined even after retries.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Refusal {
-    /// The sim refuses, for this reason.
+    /// The sim refuses, for the given reason.
     #[error("{0}")]
     Refused(String),
-    /// The sim has another version of Squall; the text describes it.
+    /// The sim has a different version of Squall, as described.
     #[error("different versions: this program is {ours}, {0}", ours = primitives::VERSION)]
     Version(String),
 }
@@ -40,7 +40,7 @@ pub enum Refusal {
 /// Why a search failed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotFound {
-    /// The search timed out; the text names what was still missing.
+    /// The search timed out; the message names what was still missing.
     #[error("found no game to join within {0:.0?}: {1}")]
     InTime(Duration, String),
     /// The search can never succeed.
@@ -52,13 +52,13 @@ impl From<BusError> for Missing {
     fn from(error: BusError) -> Missing {
         match error {
             BusError::NeedsToken
-            // Waiting does not fix these; they need a person's intervention. All others may pass,
-            // such as a sim that starts later or an unplugged cable.
+            // Waiting does not fix these; they require human intervention. All others may be
+            // temporary, such as an unplugged cable or a sim that starts later.
             | BusError::WrongToken
             | BusError::Keys(_)
             | BusError::NeedsKeys(_)
             | BusError::NotAllowed { .. } => Missing::Forever(Refusal::Refused(error.to_string())),
-            // An unreadable answer comes from another version, and waiting does not change that.
+            // An unreadable answer comes from a different version, which waiting does not change.
             BusError::Request { .. } => Missing::Forever(Refusal::Version(error.to_string())),
             other => Missing::Yet(other.to_string()),
         }
@@ -85,7 +85,7 @@ impl<'a> GameSearch<'a> {
     }
 
     /// Retries until it succeeds, times out or fails for good; reports what is missing whenever
-    /// that changes.
+    /// this changes.
     ///
     /// # Errors
     /// [`NotFound`] names what was still missing at the end.
@@ -139,16 +139,17 @@ pub fn find_game(
 ) -> Result<(Bus, GameName, GameInfo), Missing> {
     let bus = place.session(named, session)?;
     let (game, info) = choose_game(&bus, named)?;
-    // The sim may have started after the session was opened. Look it up again with the game's name:
-    // without a name, the registry was asked for any game.
+    // The sim may have started after the session was opened. Look up the token again by the game's
+    // name: without a name, the registry was searched for any game.
     let token = place.net(Some(&game))?.token;
     Ok((bus.with_token(token), game, info))
 }
 
-/// The game of this name, or the only one on the network, with its details.
+/// The game with this name, or the only one on the network, with its details.
 ///
 /// # Errors
-/// [`Missing`] if it does not exist yet, if there are several, or if its sim has another version.
+/// [`Missing`] if it does not exist yet, if there are several, or if its sim has a different
+/// version.
 pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, GameInfo), Missing> {
     let game = named.map_or_else(|| only_game(bus), |game| Ok(game.clone()))?;
     let info = game_info(bus, &game)?;
@@ -159,8 +160,8 @@ pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, Gam
 fn only_game(bus: &Bus) -> Result<GameName, Missing> {
     let games = games(bus)?;
     match games.as_slice() {
-        // Usually there is only one game, and requiring its name would be a nuisance. With several,
-        // a guess could join boats to another person's game.
+        // Usually there is only one game, and requiring its name would be a nuisance. With several
+        // games, a guess could join boats to someone else's game.
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim found on the network".to_owned())),
         several => {
@@ -207,7 +208,7 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
 
 /// The sim's description of its game, once validated.
 fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
-    // The version first: the rest may be unreadable in another version.
+    // The version first: if it differs, the rest may be unreadable.
     let value: serde_json::Value = serde_json::from_slice(answer).unwrap_or_default();
     let version = value
         .get("version")
@@ -218,8 +219,8 @@ fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
     }
     let unparseable = |e: String| Refusal::Version(format!("cannot parse the sim's scenario: {e}"));
     let info: GameInfo = serde_json::from_slice(answer).map_err(|e| unparseable(e.to_string()))?;
-    // The rest of the program indexes teams and boats by the scenario's references, and this
-    // scenario comes from the network.
+    // Later code indexes teams and boats by the scenario's references, and this scenario comes from
+    // the network.
     info.scenario.check_received().map_err(unparseable)?;
     Ok(info)
 }
@@ -237,7 +238,7 @@ pub struct Joined {
     pub asked: Instant,
 }
 
-/// Joins with these vehicles in this role, with the token from `place`.
+/// Joins in this role with these vehicles, with the token from `place`.
 ///
 /// # Errors
 /// [`Missing`] if the sim does not reply or refuses, or if another node has a vehicle.
@@ -248,11 +249,11 @@ pub fn join(
     role: Role,
     vehicles: &[String],
 ) -> Result<Joined, Missing> {
-    // The hub silently drops requests that these keys do not allow: the node would wait for an
+    // The hub silently drops requests that these keys do not allow, and the node would wait for an
     // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // Gives the sim the node's session, so that the sim can act as soon as that link ends. A killed
+    // Tell the sim the node's session, so that it can act as soon as that link ends. A killed
     // process closes its socket, and its boats hold in the same decision.
     let version = primitives::VERSION.to_owned();
     let node = bus.id();
@@ -299,7 +300,7 @@ fn check_keys(
     let Some(keys) = &bus.keys else { return Ok(()) };
     let is_own = |name: &String| match (&keys.identity, role) {
         (Identity::Team(team), Role::Agent) => {
-            // The sim itself refuses an unknown name.
+            // The sim itself refuses unknown names.
             scenario
                 .vehicle_by_name(name)
                 .is_none_or(|v| scenario.teams[scenario.team_of(v).index()].name == *team)

@@ -26,7 +26,7 @@ pub fn ask_gateway(
 ) -> Result<OperatorReply, BusError> {
     let deadline = clock::now() + limit;
     // Commands that need the token are sent only once, even if the reply is lost: a second release
-    // could release a different stop.
+    // could end a different stop.
     let repeats = if command.needs_token() {
         0
     } else {
@@ -59,8 +59,8 @@ fn ask_once(
             .max(Duration::from_millis(1))
     };
     let stream = TcpStream::connect_timeout(&at, left()).map_err(failed)?;
-    // Nagle's algorithm would delay the second line until the first is acknowledged, up to 40 ms on
-    // Linux.
+    // Nagle's algorithm would delay the second line until the first is acknowledged, by up to 40 ms
+    // on Linux.
     stream.set_nodelay(true).map_err(failed)?;
     let mut reader = BufReader::new(&stream);
     let mut exchange = |mut payload: Vec<u8>| -> std::io::Result<Option<Vec<u8>>> {

@@ -1,4 +1,4 @@
-//! A bounded queue from the network's threads to a node's own.
+//! A bounded queue from the network's threads to a node's own thread.
 
 use crate::Watched;
 use std::collections::VecDeque;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// The state that both sides share.
+/// The state shared by both sides.
 struct Queue<T> {
     items: Watched<VecDeque<T>>,
     capacity: usize,
@@ -44,13 +44,13 @@ impl<T> InboxSender<T> {
             .fetch_add(u64::from(is_dropped), Ordering::Relaxed);
     }
 
-    /// Enqueues `item` if there is a free slot, and returns whether there was.
+    /// Enqueues `item` if there is a free slot; returns whether there was one.
     pub fn offer(&self, item: T) -> bool {
         let Queue {
             items, capacity, ..
         } = &*self.0;
         let surplus = items.visit(|items| {
-            // The newest is refused, not the oldest: accepted items are processed in order, and a
+            // Drop the newest item, not the oldest: accepted items are processed in order, and a
             // flood loses its own messages.
             if items.len() >= *capacity {
                 return Some(item);

@@ -1,9 +1,10 @@
-//! Cells that each hold only the newest message, so that a slow reader never works on stale ones.
+//! Cells that each hold only the newest message, so that a slow reader never works on stale
+//! messages.
 
 use crate::Watched;
 use std::time::Duration;
 
-/// Numbered cells, each with the newest item or empty.
+/// Numbered cells, each empty or with the newest item.
 pub struct Latest<T>(Watched<Vec<Option<T>>>);
 
 impl<T> Latest<T> {
@@ -17,7 +18,7 @@ impl<T> Latest<T> {
         self.change(cell, |_| item);
     }
 
-    /// Replaces the content of a cell by `next` of it.
+    /// Replaces the content of a cell by applying `next` to it.
     pub fn change(&self, cell: usize, next: impl FnOnce(Option<T>) -> T) {
         self.0.visit(|cells| {
             if let Some(cell) = cells.get_mut(cell) {
@@ -31,8 +32,8 @@ impl<T> Latest<T> {
     pub fn take(&self, limit: Duration) -> Vec<Option<T>> {
         self.0
             .wait(limit, |cells| cells.iter().any(Option::is_some));
-        // All cells at once: an agent with boats of several teams then works on the newest picture
-        // of each.
+        // Empty all cells at once: then an agent with boats of several teams works on the newest
+        // picture of each team.
         self.0
             .visit(|cells| cells.iter_mut().map(Option::take).collect())
     }

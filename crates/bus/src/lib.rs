@@ -4,8 +4,8 @@
 //! *leaves* (zenoh clients with one link). By default the hub listens on loopback only and no node
 //! scouts: two runs on one machine never meet.
 //!
-//! Functions here block or call back. Callbacks run on zenoh's threads and must only hand data
-//! over.
+//! Functions of this crate block or call back. Callbacks run on zenoh's threads and must only pass
+//! data on.
 
 mod access;
 mod admission;

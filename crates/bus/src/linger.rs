@@ -1,10 +1,10 @@
-//! Disables the linger option on the sockets of zenoh's links: closing one never waits for its
-//! peer.
+//! Disables the linger option on the sockets of zenoh's links, so that closing a socket never waits
+//! for its peer.
 //!
 //! zenoh gives every TCP and TLS socket a linger time of ten seconds. Linux then blocks in `close`
 //! until the peer has received all data, even on a non-blocking socket, and zenoh closes sockets in
-//! the threads that serve all its other links. A cut-off or stopped peer would therefore block all
-//! others for ten seconds. Without the option the system sends the remaining data in the
+//! the threads that serve all its other links. An unreachable or stopped peer would therefore block
+//! all others for ten seconds. Without the option the system sends the remaining data in the
 //! background.
 
 use crate::descriptor::{self, Ends, Kind};
@@ -13,7 +13,7 @@ use zenoh::sample::SampleKind;
 use zenoh::session::{Link, LinkEvent};
 use zenoh::{Session, Wait};
 
-/// Disables the option on the socket of every link of a session, existing and future.
+/// Disables the option on the sockets of all links of a session, existing and future.
 pub(crate) fn disable(session: &Session) -> zenoh::Result<()> {
     let take = |event: LinkEvent| {
         if event.kind() == SampleKind::Put {
@@ -30,13 +30,14 @@ pub(crate) fn disable(session: &Session) -> zenoh::Result<()> {
         .wait()
 }
 
-/// The addresses of a link's two ends; `None` if it is not a connection.
+/// The addresses of a link's two ends; `None` if the link has no connection.
 pub(crate) fn ends(link: &Link) -> Option<Ends> {
     let address = |locator: &zenoh::config::Locator| locator.address().as_str().parse().ok();
     Some((address(link.src())?, address(link.dst())?))
 }
 
-/// Disables the option on the socket of a link. Links without a connection, such as UDP, have none.
+/// Disables the option on a link's socket. Connectionless links, such as UDP, have no linger
+/// option.
 fn disable_for(link: &Link) {
     if let Some(ends) = ends(link) {
         descriptor::all()
@@ -47,13 +48,14 @@ fn disable_for(link: &Link) {
 }
 
 /// Disables the option on a descriptor if it is the socket between these two addresses. The socket
-/// stays open: zenoh holds its link during the report.
+/// stays open, because zenoh holds its link during the report.
 fn disable_if(descriptor: RawFd, ends: Ends) {
     if matches!(descriptor::kind(descriptor), Kind::Connection(found) if found == ends) {
-        // A closed socket no longer needs it: errors are ignored. Disabled, not zero: with zero the
-        // system discards the data sent last. Links that are never completed are not reported here;
-        // for those, `.cargo/config.toml` compiles zenoh's linger time to nothing. Before, `strace
-        // -f -T -e close` showed calls of 10.0 s; `tests/process/network.rs` guards it.
+        // A closed socket no longer needs it, so errors are ignored. Disable it instead of setting
+        // zero: with a linger time of zero, the system discards unsent data. Incomplete links are
+        // not reported here; for these, the build settings in `.cargo/config.toml` remove zenoh's
+        // linger time. Without this, `strace -f -T -e close` showed `close` taking 10.0 s;
+        // `tests/process/network.rs` guards against it.
         drop(descriptor::with_socket(descriptor, |socket| {
             socket.set_linger(None)
         }));

@@ -1,4 +1,4 @@
-//! A lock on the link to a boat: only one gateway of this user on this machine can hold it.
+//! A lock on the link to a boat, held by at most one of this user's gateways on this machine.
 
 use crate::local_registry::private_folder;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Maximum length of a process number, bytes.
 const HOLDER_MAX: u64 = 32;
 
-/// The lock; freed when its process ends, for whatever reason.
+/// The lock, released when its process ends, for whatever reason.
 #[derive(Debug)]
 pub struct LinkLock(
     #[expect(
@@ -23,7 +23,7 @@ pub struct LinkLock(
 /// Why locking a link failed.
 #[derive(Debug, Error)]
 pub enum LinkLockError {
-    /// Another process holds it.
+    /// A different process holds it.
     #[error("another gateway on this machine holds the link {link}: {}", .holder.map_or("a process that is \
         ending".to_owned(), |pid| format!("process {pid}")))]
     Held {

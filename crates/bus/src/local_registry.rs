@@ -1,7 +1,7 @@
-//! The games and gateways running on this machine, one small file each: `list`, `watch` and `tell`
-//! find them without an address.
+//! The games and gateways running on this machine, with one small file each: `list`, `watch` and
+//! `tell` find them without an address.
 //!
-//! Only a convenience: a node with a given address never reads it.
+//! This is only a convenience: a node with a given address never reads it.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use std::net::SocketAddr;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
-/// How to reach a game on this machine.
+/// The way to reach a game on this machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Entry {
     /// The game's name.
@@ -23,12 +23,13 @@ pub struct Entry {
     pub pid: u32,
     /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
-    /// Whether it is only the water of emulated boats; commands use this only if it is named.
+    /// Whether it only simulates the water for emulated boats; commands use such a game only by
+    /// name.
     #[serde(default)]
     pub is_water: bool,
 }
 
-/// Where a gateway on this machine accepts operator commands.
+/// The address at which a gateway on this machine accepts operator commands.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GatewayEntry {
     /// The boat's name.
@@ -55,8 +56,8 @@ fn folder() -> PathBuf {
 }
 
 fn folder_in(runtime_dir: Option<OsString>) -> PathBuf {
-    // A relative path would mean another folder in each working directory, and is invalid by the
-    // XDG Base Directory Specification.
+    // A relative path would mean a different folder in each working directory, and is invalid under
+    // the XDG Base Directory Specification.
     match runtime_dir
         .map(PathBuf::from)
         .filter(|dir| dir.is_absolute())
@@ -71,8 +72,8 @@ fn folder_in(runtime_dir: Option<OsString>) -> PathBuf {
 /// Whether only this user can write to the folder or read its files.
 fn is_private(folder: &Path) -> bool {
     fs::symlink_metadata(folder).is_ok_and(|about| {
-        // `symlink_metadata` does not follow a link that another user put into `/tmp`. The files
-        // hold tokens.
+        // `symlink_metadata` does not follow a link that a different user put into `/tmp`. The
+        // files contain tokens.
         about.is_dir()
             && about.uid() == rustix::process::geteuid().as_raw()
             && about.mode() & 0o077 == 0
@@ -94,7 +95,7 @@ pub fn register(entry: &Entry) -> std::io::Result<Registration> {
 /// Registers a gateway.
 ///
 /// # Errors
-/// As [`register`].
+/// As for [`register`].
 pub fn register_gateway(entry: &GatewayEntry) -> std::io::Result<Registration> {
     // The boat's name may not be valid as a file name; a process has one gateway.
     register_in(&folder(), &format!("{}.{GATEWAYS}", entry.pid), entry)
@@ -134,7 +135,7 @@ fn register_in<E: Serialize>(
 }
 
 impl Registration {
-    /// Replaces the entry by one of the same kind. Concurrent readers see the previous entry.
+    /// Replaces the entry with one of the same kind. Concurrent readers see the previous entry.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -147,7 +148,7 @@ impl Registration {
             .mode(0o600)
             .open(&unfinished)?;
         file.write_all(&serde_json::to_vec(entry)?)?;
-        // Renamed when complete: others read the folder at any time, and could not parse half a
+        // Rename when complete: others may read the folder at any time, and could not parse half a
         // file.
         fs::rename(&unfinished, &self.0)
     }
@@ -155,19 +156,19 @@ impl Registration {
 
 impl Drop for Registration {
     fn drop(&mut self) {
-        // Another process may have removed it already.
+        // A different process may have removed it already.
         drop(fs::remove_file(&self.0));
     }
 }
 
-/// All games whose process still runs, by name; removes entries of dead processes.
+/// All games whose processes still run, by name; removes entries of dead processes.
 pub fn list() -> Vec<Entry> {
     let mut entries: Vec<Entry> = list_in(&folder(), GAMES);
     entries.sort_by(|a, b| (&a.game, a.pid).cmp(&(&b.game, b.pid)));
     entries
 }
 
-/// All gateways whose process still runs, by boat; removes entries of dead processes.
+/// All gateways whose processes still run, by boat; removes entries of dead processes.
 pub fn gateways() -> Vec<GatewayEntry> {
     let mut entries: Vec<GatewayEntry> = list_in(&folder(), GATEWAYS);
     entries.sort_by(|a, b| (&a.vehicle, a.pid).cmp(&(&b.vehicle, b.pid)));
@@ -175,7 +176,7 @@ pub fn gateways() -> Vec<GatewayEntry> {
 }
 
 fn list_in<E: DeserializeOwned>(folder: &Path, kind: &str) -> Vec<E> {
-    // Other users with write access could redirect us to their own game.
+    // Other users with write access could redirect us to their own games.
     let files = is_private(folder)
         .then(|| fs::read_dir(folder).ok())
         .flatten();
@@ -188,7 +189,7 @@ fn list_in<E: DeserializeOwned>(folder: &Path, kind: &str) -> Vec<E> {
     files.filter_map(|path| live_entry(&path)).collect()
 }
 
-/// The part that every entry has.
+/// The data in every entry.
 #[derive(Deserialize)]
 struct Process {
     pid: u32,
@@ -200,7 +201,7 @@ const ENTRY_MAX: u64 = 1 << 16;
 fn live_entry<E: DeserializeOwned>(path: &Path) -> Option<E> {
     let json = primitives::input_file::read(path, ENTRY_MAX).ok()?;
     let Process { pid } = serde_json::from_slice(&json).ok()?;
-    // Without /proc the process is assumed to be alive.
+    // Without /proc, assume that the process is alive.
     let dead = Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{pid}")).exists();
     if dead {
         // A killed process leaves its file behind; the next reader removes it.

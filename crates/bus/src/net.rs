@@ -16,13 +16,13 @@ use zenoh::Config;
 /// The default port of a hub, if free.
 pub const DEFAULT_PORT: u16 = 7447;
 
-/// zenoh's settings for a link. Only its own messages, such as declarations, wait briefly for a
-/// congested link (in µs); a link that cannot take even those is closed. A batch has up to 64 kB:
-/// answers of a megabyte, and as many urgent messages as can be requested at once, fit in. Messages
-/// reassembled from fragments have a size limit.
+/// zenoh's settings for a link. Only zenoh's own messages, such as declarations, wait briefly for a
+/// congested link (in µs); a link that cannot accept even these is closed. A batch has up to 64 kB;
+/// the queues have space for answers of a megabyte, and for as many urgent messages as can be
+/// requested at once. Messages reassembled from fragments have a size limit.
 const LINKS: [(&str, &str); 5] = [
-    // zenoh would wait a millisecond for a free slot before it drops. It waits in a thread that
-    // serves all nodes: one stopped observer would slow down all.
+    // zenoh would wait a millisecond for a free slot before dropping a message. It waits in a
+    // thread that serves all nodes, so a single stopped observer would slow down all of them.
     (
         "transport/link/tx/queue/congestion_control/drop/wait_before_drop",
         "0",
@@ -36,8 +36,9 @@ const LINKS: [(&str, &str); 5] = [
     ("transport/link/rx/max_message_size", "16777216"),
 ];
 
-/// How a hub treats messages from other nodes. All are dropped if they would have to wait for
-/// their outgoing link. An answer has the settings of its query, and only the queue of this
+/// How a hub treats messages from other nodes. All are dropped if they would have to wait for their
+/// outgoing link. An answer has the settings of its query, and only the queue of this priority has
+/// space for the longest answers: a scenario with a network has 216 kB.
 /// priority has room for the longest answers: a scenario with a network has 216 kB.
 fn qos(game: &GameName) -> String {
     let long = [
@@ -52,36 +53,36 @@ fn qos(game: &GameName) -> String {
     .to_string()
 }
 
-/// What a hub accepts from others: a helm report fits into a message of 2 MB, a join request into a
-/// query of 64 kB, the orders for a thousand boats into 256 kB. A connecting node has this long to
-/// identify itself.
+/// Limits of a hub for data from others: a helm report fits into a message of 2 MB, a join request
+/// into a query of 64 kB, the orders for a thousand boats into 256 kB. A connecting node has this
+/// time to identify itself.
 const MESSAGE_MAX: usize = 1 << 21;
 const QUESTION_MAX: usize = 1 << 16;
 const PUBLISHED_MAX: usize = 1 << 18;
 const ACCEPT_MS: usize = 5000;
-/// Maximum number of nodes linked to a hub, with as many pending, if the process may have four
-/// times as many files open.
+/// Maximum number of nodes linked to a hub, with as many pending, if the process may open four
+/// times as many files.
 const NODES_MAX: usize = 1000;
 pub(crate) const FILES_MAX: u64 = 4 * NODES_MAX as u64;
 
 /// Size limit of a zenoh configuration, bytes.
 const CONFIG_MAX: u64 = 1 << 20;
 
-/// How a node reaches the others.
+/// How a node reaches the other nodes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Net {
     /// Endpoints to listen on, for example `tcp/0.0.0.0:7447`. Only a hub listens.
     pub listen: Vec<String>,
     /// Endpoints to connect to, for example `tcp/192.168.1.5:7447`.
     pub connect: Vec<String>,
-    /// Whether to discover nodes, and be discovered, by multicast on the local network.
+    /// Whether to discover nodes by multicast on the local network, and be discovered.
     pub lan: bool,
-    /// A zenoh configuration (JSON5) to start from: access control, interfaces, buffers and the
-    /// like.
+    /// A zenoh configuration (JSON5) as a starting point: access control, interfaces, buffers and
+    /// so on.
     pub config_file: Option<PathBuf>,
     /// The game's token, if known.
     pub token: Option<Token>,
-    /// The keys of this node, in a game with keys: its links are encrypted and mutually
+    /// The keys of this node, in a game with keys: links are then encrypted and mutually
     /// authenticated. The process must have called [`restart_for_keys`](crate::restart_for_keys)
     /// first.
     pub keys: Option<Arc<Bundle>>,
@@ -128,8 +129,8 @@ impl Net {
                 &access::control(game, scenario, self.keys.is_some()).to_string(),
             )?;
         }
-        // A star, not a mesh: in lockstep all nodes talk to the sim only, and a client needs no
-        // open port.
+        // A star, not a mesh: in lockstep all nodes exchange messages only with the sim, and a
+        // client needs no open port.
         set(&mut config, "mode", "\"router\"")?;
         let listen: Vec<String> = self
             .endpoints(&self.listen)
@@ -140,14 +141,15 @@ impl Net {
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
         // Our messages carry simulated time; a hybrid clock in every sample would only add cost.
         set(&mut config, "timestamping/enabled", "false")?;
-        // Whatever a node requests, its messages through the hub never wait; all others would wait
-        // with them.
+        // Whatever a node requests, its messages through the hub never wait; otherwise all others
+        // would wait, too.
         set(&mut config, "qos/network", &qos(game))?;
         limit_strangers(&mut config, game, nodes)?;
         Ok(config)
     }
 
-    /// The zenoh configuration of a leaf. It keeps trying to connect, and reconnects after a cut.
+    /// The zenoh configuration of a leaf. It keeps trying to connect, and reconnects after a link
+    /// failure.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
         if let Some(keys) = self
             .keys
@@ -164,8 +166,8 @@ impl Net {
         set(&mut config, "mode", "\"client\"")?;
         // Without an endpoint, a leaf on a local network scouts for a hub.
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
-        // One attempt: the search for a game looks up its place before each, since the next sim may
-        // have another place and another token.
+        // One attempt: the search for a game looks up the place before each, since the next sim may
+        // have a different place and token.
         set(&mut config, "connect/timeout_ms", "0")?;
         set(&mut config, "connect/exit_on_failure", "true")?;
         Ok(config)
@@ -200,15 +202,15 @@ impl Net {
             check_threads_for_keys()?;
             let [authority, certificate, key] = keys.files();
             let tls = json!({
-                // Names stay verified although addresses on a dock change: zenoh (1.10.2) trusts
-                // the public authorities besides ours, and none of them certifies `localhost` or a
-                // private address.
+                // Verify names, although addresses on a dock change: besides ours, zenoh (1.10.2)
+                // trusts the public authorities, none of which certifies `localhost` or private
+                // addresses.
                 "root_ca_certificate": authority, "enable_mtls": true, "verify_name_on_connect": true,
                 "listen_certificate": certificate, "listen_private_key": key,
                 "connect_certificate": certificate, "connect_private_key": key,
             });
             set(&mut config, "transport/link/tls", &tls.to_string())?;
-            // Endpoints learned from other nodes must use TLS too.
+            // Endpoints learned from other nodes must also use TLS.
             set(
                 &mut config,
                 "transport/link/protocols",
@@ -218,7 +220,7 @@ impl Net {
         Ok(config)
     }
 
-    /// Endpoints in zenoh's form: with keys, TCP becomes TLS. QUIC carries what is not
+    /// Endpoints in zenoh's form: with keys, TCP becomes TLS. QUIC carries messages that are not
     /// [reliable](crate::Delivery) in datagrams; without keys, zenoh calls it reliable UDP.
     pub(crate) fn endpoints(&self, endpoints: &[String]) -> Vec<String> {
         let zenoh_form = |endpoint: &String| match (endpoint.split_once('/'), self.keys.is_some()) {
@@ -254,12 +256,12 @@ fn with_handshake_time(endpoint: String) -> String {
     }
     let separator = if endpoint.contains('#') { ';' } else { '#' };
     // The TLS listener has a separate timeout besides `accept_timeout`. It also waits 0.1 s after
-    // each failed handshake, when no other node can connect; `.cargo/config.toml` compiles that to
-    // nothing.
+    // each failed handshake, when no other node can connect; the build settings in
+    // `.cargo/config.toml` remove that.
     format!("{endpoint}{separator}tls_handshake_timeout_ms={ACCEPT_MS}")
 }
 
-/// The number of nodes for which a hub with these open files has room.
+/// The number of nodes for which a hub with these open files has space.
 pub(crate) fn nodes_max(files: OpenFiles) -> usize {
     usize::try_from(files.usual / 4).map_or(NODES_MAX, |nodes| nodes.min(NODES_MAX))
 }
@@ -277,7 +279,8 @@ fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result
         // zenoh would refuse the newcomer; `crate::admission` ends another connection first.
         ("transport/unicast/accept_pending", (2 * nodes).to_string()),
         ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
-        // Smaller than a leaf's: each link keeps the fragments of a message until it is complete.
+        // Smaller than a leaf's: each link keeps the fragments of a message until they are
+        // complete.
         (
             "transport/link/rx/max_message_size",
             MESSAGE_MAX.to_string(),
@@ -318,8 +321,8 @@ pub fn is_loopback(endpoint: &str) -> bool {
     }
 }
 
-/// Whether two endpoints have the same host and port. All names of the loopback interface are one
-/// host, whatever the protocol.
+/// Whether two endpoints have the same host and port. All names of the loopback interface count as
+/// one host, whatever the protocol.
 pub fn is_same_place(one: &str, other: &str) -> bool {
     let port = |endpoint| address(endpoint).rsplit_once(':').map(|(_, port)| port);
     let is_same_host = is_loopback(one) && is_loopback(other) && port(one) == port(other);
@@ -328,11 +331,11 @@ pub fn is_same_place(one: &str, other: &str) -> bool {
 
 /// The range of [`free_port`]: registered ports that systems do not give to outgoing connections
 /// (Linux starts at 32768, others at 49152; RFC 6335). A port in those ranges can be taken between
-/// the check and `listen`, even by a client that retries to reach that very port.
+/// the check and `listen`, even by a client that keeps trying to reach that very port.
 const FREE_PORTS: std::ops::Range<u16> = 20_000..32_768;
 
-/// A loopback TCP port that was free a moment ago: the default port if free and preferred,
-/// otherwise another.
+/// A loopback TCP port that was free a moment ago: the default port if preferred and free,
+/// otherwise a different one.
 ///
 /// # Errors
 /// If none of the ports tried is free.
@@ -399,7 +402,7 @@ mod tests {
         ));
     }
 
-    /// A client whose own port is its target port connects to itself, and blocks the port for
+    /// A client whose own port is its target port connects to itself, which blocks the port for
     /// listeners.
     #[test]
     fn who_retries_to_reach_a_free_port_does_not_take_it() {

@@ -1,4 +1,4 @@
-//! A hub's limit of open files. Some of the allowed files are reserved for when all others are
+//! A hub's limit of open files. Some files are reserved for when all others are in use.
 //! taken.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
@@ -6,7 +6,7 @@ use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 /// The number reserved, if the system allows at least eight times as many.
 const KEPT: u64 = 128;
 
-/// The limits of this process, numbers of files.
+/// The limits of this process, in numbers of files.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenFiles {
     /// The limit in normal operation.
@@ -22,14 +22,14 @@ impl OpenFiles {
         let [current, maximum] =
             [limits.current, limits.maximum].map(|limit| limit.unwrap_or(u64::MAX));
         // The limit is lowered by the reserve, so that the system itself refuses files: zenoh's
-        // `accept` cannot be told to leave some.
+        // `accept` cannot be told to keep a reserve.
         let kept = KEPT.min(maximum / 8);
         let most = maximum.min(current.max(wanted).saturating_add(kept));
         let files = OpenFiles {
             usual: most - kept,
             most,
         };
-        // If the system refuses, the limits stay unchanged.
+        // If the system refuses, the limits remain unchanged.
         if set(files.usual) {
             files
         } else {

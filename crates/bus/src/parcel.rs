@@ -1,10 +1,10 @@
-//! A parcel: the content of a query or an answer, and the seal of an answer: proof that the
+//! A parcel: the content of a query or an answer, with the seal of an answer, which proves that the
 //! answering node knows the game's token.
 //!
 //! Without keys, any node may declare that it answers at the topic of a boat. A query therefore
-//! goes to all of them and carries a nonce as its attachment. The attachment of an answer is the
-//! HMAC-SHA256, under the game's token, of nonce, key, query and answer. Answers made for another
-//! query, or by a node without the token, do not count.
+//! goes to all such nodes, with a nonce as its attachment. The attachment of an answer is the
+//! HMAC-SHA256, under the game's token, of nonce, key, query and answer. Answers to other queries,
+//! or from nodes without the token, do not count.
 
 use crate::{Token, random_bytes};
 use zenoh::bytes::ZBytes;
@@ -12,7 +12,7 @@ use zenoh::bytes::ZBytes;
 /// The first part of the sealed data; no proof of a request begins with it.
 const TAG: &[u8] = b"answer";
 
-/// The bytes of a query or an answer, with its nonce or seal; the attachment is empty if it has
+/// The bytes of a query or an answer, with its nonce or seal; the attachment is empty if there is
 /// neither.
 #[derive(Clone, Debug, Default)]
 pub struct Parcel {
@@ -42,7 +42,7 @@ impl Parcel {
 
     /// A query whose answers must be sealed.
     pub(crate) fn question(bytes: Vec<u8>) -> Parcel {
-        // 128 bits: no two queries ever share a nonce, so a recorded answer fits no later query.
+        // 128 bits: no two queries ever share a nonce, so a recorded answer matches no later query.
         Parcel {
             bytes,
             attachment: random_bytes::<16>().to_vec(),
@@ -51,7 +51,8 @@ impl Parcel {
 
     /// The answer to this query at `key`, sealed if the node knows a token.
     pub(crate) fn answer(&self, key: &str, bytes: Vec<u8>, token: Option<&Token>) -> Parcel {
-        // A query without a nonce is from a node without the token, which could not verify a seal.
+        // A query without a nonce comes from a node without the token, which could not verify a
+        // seal.
         let token = token.filter(|_| !self.attachment.is_empty());
         let attachment = token
             .map(|token| token.hmac(&self.sealed(key, &bytes)))

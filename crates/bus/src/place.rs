@@ -7,7 +7,7 @@ use crate::{Bus, Net};
 use messages::topic::GameName;
 use std::sync::Arc;
 
-/// Finds the place of a game: the named one, or the only one running.
+/// Finds the place of a game: the named game, or the only one running.
 type Find = dyn Fn(Option<&GameName>) -> Result<Net, String> + Send + Sync;
 
 /// The place of a game, looked up on demand.
@@ -38,14 +38,14 @@ impl Place {
     /// [`Missing`] if the lookup fails.
     pub fn net(&self, game: Option<&GameName>) -> Result<Net, Missing> {
         let net = (self.find)(game).map_err(|reason| Missing::Forever(Refusal::Refused(reason)))?;
-        // If no game is found, the last known token stays until another game appears.
+        // If no game is found, the last known token stays until a new game appears.
         if net.token.is_some() {
             self.token.set(net.token.clone());
         }
         Ok(net)
     }
 
-    /// A session at the place of a game; reuses the previous one if it leads there.
+    /// A session at the place of a game; reuses the previous session if it leads there.
     pub(crate) fn session(
         &self,
         game: Option<&GameName>,
@@ -53,7 +53,7 @@ impl Place {
     ) -> Result<Bus, Missing> {
         let net = self.net(game)?;
         match session {
-            // Opening a session costs five round trips: it is kept while it leads to the same
+            // Opening a session costs five round trips, so keep it while it leads to the same
             // place.
             Some((there, bus)) if *there == net => return Ok(bus.clone()),
             Some((_, bus)) => bus.close(),

@@ -56,8 +56,8 @@ impl Bus {
         )
     }
 
-    /// Like [`Bus::ask`], at a key where other nodes answer. In a game without keys any node may
-    /// answer: if this node knows the token, only answers that prove the token count.
+    /// Like [`Bus::ask`], for a key at which other nodes answer. In a game without keys any node
+    /// may answer: if this node knows the token, only answers that prove the token count.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed, or if only nodes without the token have answered.
@@ -84,7 +84,7 @@ impl Bus {
                 .ask(priority, key, Parcel::new(payload), limit, &mut |_| true);
         };
         // Any node may declare that it answers for a boat's gateway, and zenoh routes a query to
-        // the first that claims completeness: a stranger could swallow an E-stop and reply
+        // the first that claims completeness: an intruder could intercept an E-stop and reply
         // "disarmed". Therefore all are queried, and only a sealed answer counts. A relay in the
         // sim would make each command depend on the sim's loop.
         let question = Parcel::question(payload);
@@ -131,11 +131,11 @@ impl Bus {
         token::request(self.token.as_ref(), key, body, ask)
     }
 
-    /// Like [`Bus::request`], to a node other than the sim: in a game without keys, one that knows
-    /// the token.
+    /// Like [`Bus::request`], but to a node other than the sim. In a game without keys, the node
+    /// must know the token.
     ///
     /// # Errors
-    /// As [`Bus::request`], and if this node has neither the token nor keys: it could not verify
+    /// As for [`Bus::request`], and if this node has neither token nor keys: it could not verify
     /// who answers.
     pub fn request_node<B: Serialize, T: DeserializeOwned>(
         &self,

@@ -1,6 +1,6 @@
 //! A session on the zenoh network of ROS 2 nodes (`rmw_zenoh`), separate from any game's network.
 //!
-//! Nothing here waits for a ROS 2 node: a link that cannot accept a message at once loses it.
+//! No function waits for a ROS 2 node: a link that cannot accept a message at once loses it.
 
 use crate::error::reason;
 use crate::parcel::Parcel;
@@ -12,13 +12,13 @@ use std::ops::Deref;
 use std::time::Duration;
 use zenoh::Wait;
 
-/// How long to wait for the tokens of games at a router: they arrive with its first answer.
+/// How long to wait for the tokens of games at a router; they arrive with its first answer.
 const POLL: Duration = Duration::from_secs(1);
 
 /// A session on a ROS 2 network.
 pub struct RosSession {
     session: ZenohSession,
-    /// Whether this process is the router, because no other was running.
+    /// Whether this process is the router, because no other router was running.
     pub is_router: bool,
 }
 
@@ -30,8 +30,8 @@ impl RosSession {
     /// as the router.
     ///
     /// # Errors
-    /// [`BusError`] if the router is elsewhere and does not respond, if its port belongs to another
-    /// program, or if it is a Squall game.
+    /// [`BusError`] if the router is elsewhere and does not respond, if its port belongs to a
+    /// different program, or if it is a Squall game.
     pub fn open(endpoint: &str) -> Result<RosSession, BusError> {
         let what = format!("of ROS 2 at {endpoint}");
         let net = Net {
@@ -75,7 +75,7 @@ impl RosSession {
             .map(RosPublisher)
     }
 
-    /// Calls `receive` with every request to the service at `key`, and the handle that answers it.
+    /// Calls `receive` with every request to the service at `key`, and a handle to answer it.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -90,7 +90,7 @@ impl RosSession {
                 Box::new(query),
             );
         };
-        // Clients of ROS 2 ask only queryables that are complete.
+        // ROS 2 clients query only queryables that are complete.
         let queryable = self
             .session
             .0
@@ -104,7 +104,7 @@ impl RosSession {
     }
 }
 
-/// Tokens and subscriptions are those of any session.
+/// Tokens and subscriptions work as in any session.
 impl Deref for RosSession {
     type Target = dyn Session;
 
@@ -135,7 +135,7 @@ impl Net {
         for (key, value) in [
             ("mode", "\"router\"".to_owned()),
             ("listen/endpoints", format!("[{endpoint:?}]")),
-            // By gossip, nodes learn each other's addresses from the router.
+            // Through gossip, nodes learn each other's addresses from the router.
             ("scouting/gossip/enabled", "true".to_owned()),
         ] {
             config

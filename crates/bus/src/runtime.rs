@@ -1,8 +1,8 @@
 //! The environment of nodes: the clock, randomness, waiting, threads and the opening of sessions,
 //! behind one interface.
 //!
-//! Programs use [`System`]. Tests of whole games replace all of it (`crates/simulated_network`):
-//! node code is identical in both, and no program contains a simulated network.
+//! Programs use [`System`]. Tests of whole games replace it (`crates/simulated_network`): the code
+//! of nodes is identical in both, and no program contains a simulated network.
 
 use crate::session::Session;
 use crate::zenoh_session::ZenohSession;
@@ -28,8 +28,8 @@ pub trait Runtime: Send + Sync {
     /// Fills `bytes` with random data.
     fn fill_random(&self, bytes: &mut [u8]);
 
-    /// Starts a thread of this node. Returns no handle if it cannot be joined; [`Runtime::wait`]
-    /// then waits for its end.
+    /// Starts a thread of this node. Returns no handle if the thread cannot be joined; then
+    /// [`Runtime::wait`] waits for its end.
     ///
     /// # Errors
     /// If the system cannot start a thread.
@@ -43,11 +43,10 @@ pub trait Runtime: Send + Sync {
     fn notify(&self, address: usize);
 
     /// Waits until the value at `address` changes or the deadline passes (`None`: no deadline), and
-    /// returns whether time is left. Returns `None` if this runtime uses condition variables for
-    /// waiting.
+    /// returns whether time is left. Returns `None` if this runtime waits on condition variables.
     fn wait(&self, address: usize, deadline: Option<Instant>) -> Option<bool>;
 
-    /// Whether nodes can be reached through their own sockets, besides their sessions.
+    /// Whether nodes can be reached through their own sockets in addition to their sessions.
     fn has_sockets(&self) -> bool;
 
     /// Opens the hub session of a game.
@@ -94,7 +93,7 @@ pub fn random_bytes<const N: usize>() -> [u8; N] {
 }
 
 /// Replaces [`System`] in this process. Call it before any use of the network; only the first call
-/// counts.
+/// has an effect.
 pub fn replace_runtime(runtime: &'static dyn Runtime) {
     REPLACED.get_or_init(|| runtime);
 }
@@ -116,10 +115,11 @@ impl Runtime for System {
         {
             use rustix::time::{ClockId, clock_gettime};
             let read = |id| Duration::try_from(clock_gettime(id)).unwrap_or_default();
-            // Read in this order, the difference is never too large.
+            // In this order, the difference is never too large.
             let boot_time = read(ClockId::Boottime);
             // `CLOCK_MONOTONIC` stops while a machine is suspended, `CLOCK_BOOTTIME` does not. The
-            // difference is time lost to a closed lid, which a sim does not count against any node.
+            // difference is time lost, for example with the lid closed, which a sim counts against
+            // no node.
             boot_time.saturating_sub(read(ClockId::Monotonic))
         }
         #[cfg(not(target_os = "linux"))]

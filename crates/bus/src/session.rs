@@ -1,4 +1,4 @@
-//! The session interface behind [`Bus`](crate::Bus): publish, subscribe, queries, liveliness
+//! The session interface behind [`Bus`](crate::Bus): publishing, subscriptions, queries, liveliness
 //! tokens.
 
 use crate::parcel::Parcel;
@@ -9,7 +9,7 @@ use std::time::Duration;
 pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Box<dyn Send + Sync>);
 
 impl Declaration {
-    /// Keeps `declared` and drops it with itself.
+    /// Keeps `declared`, and drops it when dropped itself.
     pub fn new(declared: impl Send + Sync + 'static) -> Declaration {
         Declaration(Box::new(declared))
     }
@@ -17,7 +17,7 @@ impl Declaration {
 
 /// Receives the bytes of a message.
 pub type OnBytes = Box<dyn Fn(&[u8]) + Send + Sync>;
-/// Receives a query and the handle that answers it.
+/// Receives a query and a handle to answer it.
 pub type OnQuery = Box<dyn Fn(Parcel, Box<dyn PendingQuery>) + Send + Sync>;
 /// Receives the key of a node, and whether it has appeared (`true`) or left.
 pub type OnToken = Box<dyn Fn(&str, bool) + Send + Sync>;
@@ -40,11 +40,11 @@ pub enum Encoding {
     Bytes,
 }
 
-/// A session. Callbacks run on its threads and must only hand data over. All methods fail if the
+/// A session. Callbacks run on its threads and must only pass data on. All methods fail if the
 /// session is closed.
 #[expect(clippy::missing_errors_doc, reason = "all for the same reason")]
 pub trait Session: Send + Sync {
-    /// Its identifier, unique on the network.
+    /// The session's identifier, unique on the network.
     fn id(&self) -> String;
 
     /// Prepares to publish on `key`.
@@ -55,8 +55,8 @@ pub trait Session: Send + Sync {
         delivery: Delivery,
     ) -> Result<Box<dyn Sender>, BusError>;
 
-    /// Calls `receive` with every message published on `key`; with `hears_own`, including this
-    /// session's own.
+    /// Calls `receive` with every message published on `key`, including this session's own if
+    /// `hears_own` is set.
     fn subscribe(
         &self,
         key: String,
@@ -78,10 +78,10 @@ pub trait Session: Send + Sync {
         accept: &mut dyn FnMut(&Parcel) -> bool,
     ) -> Result<Option<Vec<u8>>, BusError>;
 
-    /// Shows a liveliness token under `key` until it is dropped or the node dies.
+    /// Declares a liveliness token under `key` until dropped or until the node dies.
     fn show_alive(&self, key: String) -> Result<Declaration, BusError>;
 
-    /// Calls `receive` with every token under `key`, starting with those present.
+    /// Calls `receive` with every token under `key`, starting with the tokens present.
     fn watch_alive(&self, key: String, receive: OnToken) -> Result<Declaration, BusError>;
 
     /// Calls `receive` with every node that loses its link to this hub.
@@ -90,7 +90,7 @@ pub trait Session: Send + Sync {
     /// All tokens present under `key`.
     fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError>;
 
-    /// Closes the session; other nodes learn of it immediately.
+    /// Closes the session; other nodes learn of this immediately.
     fn close(&self);
 }
 

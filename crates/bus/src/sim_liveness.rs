@@ -1,8 +1,8 @@
-//! Whether the sim of a game is still alive, for agents, gateways and pages.
+//! Detects whether the sim of a game is still alive, for agents, gateways and pages.
 //!
 //! Two signs decide: the sim's liveliness token, and messages from it. A dying sim is heard until
-//! its token goes. If the link to it is cut, it falls silent first, and its token goes when the
-//! network drops the link.
+//! its token disappears. If the link to it fails, it falls silent first, and its token disappears
+//! when the network drops the link.
 
 use crate::{Bus, BusError, Declaration, Watched, clock};
 use messages::topic::{self, GameName};
@@ -15,15 +15,15 @@ use std::time::{Duration, Instant};
 pub struct Patience {
     /// Limit in every case.
     pub silence: Duration,
-    /// Limit if it was heard until its token went: the link may only have been reopened.
+    /// Limit if it was heard until its token disappeared: the link may only have been reopened.
     pub missing: Duration,
-    /// Limit if it was never heard and its token went: it has died, or the link is cut.
+    /// Limit if it was never heard and its token disappeared: it has died, or the link has failed.
     pub unheard: Duration,
 }
 
 impl Patience {
-    /// The patience of nodes that play in the game: `silence` for a silent sim, and five seconds
-    /// for one that was heard until its token disappeared.
+    /// The patience of nodes that take part in the game: `silence` for a silent sim, and five
+    /// seconds for a sim that was heard until its token disappeared.
     pub fn of_player(silence: Duration) -> Patience {
         Patience {
             silence,
@@ -38,9 +38,9 @@ impl Patience {
 pub enum SimState {
     /// Present, or not yet missing for long enough.
     Alive,
-    /// Another sim serves a game of the same name and does not know this node.
+    /// A different sim serves a game with the same name and does not know this node.
     Replaced,
-    /// Silent for this long.
+    /// Silent for the given time.
     Dead(Duration),
 }
 
@@ -49,8 +49,8 @@ pub enum SimState {
 struct SimLiveness {
     patience: Patience,
     heard_at: Instant,
-    /// Whether it was ever heard. Before its game begins it may be silent for any time; its token
-    /// then counts instead.
+    /// Whether it was ever heard. Before its game begins it may be silent for any time; then its
+    /// token counts instead.
     is_heard: bool,
     /// When its token was first found missing.
     missed_at: Option<Instant>,
@@ -80,7 +80,7 @@ impl SimLiveness {
         (self.heard_at, self.is_heard) = (now, true);
     }
 
-    /// Records that a token has appeared or gone.
+    /// Records that a token has appeared or disappeared.
     fn take_token(&mut self, key: &str, is_there: bool) {
         if is_there {
             let ours = self.ours.get_or_insert_with(|| key.to_owned());
@@ -91,8 +91,8 @@ impl SimLiveness {
         }
     }
 
-    /// Chooses a sim that is present now, regardless of which one was ours before. Returns whether
-    /// one is present.
+    /// Chooses a sim that is present now, whichever was ours before. Returns whether one is
+    /// present.
     fn choose(&mut self) -> bool {
         (self.ours, self.is_replaced) = (self.tokens.first().cloned(), false);
         self.ours.is_some()
@@ -120,9 +120,9 @@ impl SimLiveness {
             missing,
             unheard,
         } = self.patience;
-        // The order decides. A dying sim is heard until its token goes. If the link is cut, silence
-        // comes first and zenoh drops the link after 10 s; an agent that left then would be missing
-        // after the cable is back.
+        // The order decides. A dying sim is heard until its token disappears. If the link fails,
+        // silence comes first and zenoh drops the link after 10 s; an agent that left then would be
+        // missing when the cable is plugged in again.
         let is_cut_off =
             |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {
@@ -146,7 +146,7 @@ pub struct SimWatch {
 }
 
 impl SimWatch {
-    /// Watches from now on, until dropped.
+    /// Starts watching, until dropped.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -163,7 +163,7 @@ impl SimWatch {
         })
     }
 
-    /// Records that the sim was heard just now.
+    /// Records that the sim has just been heard.
     pub fn hears(&self) {
         self.liveness.visit(|liveness| liveness.hear(clock::now()));
     }
@@ -173,15 +173,15 @@ impl SimWatch {
         self.liveness.visit(|liveness| liveness.state(clock::now()))
     }
 
-    /// Waits up to `limit` for a sim and uses it from then on. Returns whether one is present.
+    /// Waits up to `limit` for a sim, and uses it from then on. Returns whether one is present.
     pub fn find(&self, limit: Duration) -> bool {
         self.liveness
             .wait(limit, |liveness| !liveness.tokens.is_empty())
             && self.liveness.visit(SimLiveness::choose)
     }
 
-    /// Waits up to `limit` until our sim has lost its token or another one has appeared. Returns
-    /// whether either happened.
+    /// Waits up to `limit` until our sim has lost its token or a different sim has appeared.
+    /// Returns whether either has happened.
     pub fn is_lost(&self, limit: Duration) -> bool {
         self.liveness.wait(limit, |liveness| {
             liveness.is_replaced || liveness.is_there() != Some(true)

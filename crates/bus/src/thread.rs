@@ -1,4 +1,4 @@
-//! Threads of a node besides its main one.
+//! Threads of a node in addition to its main thread.
 
 use crate::Watched;
 use crate::runtime::runtime;
@@ -14,10 +14,11 @@ pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io
     runtime().spawn(name, Box::new(body)).map(drop)
 }
 
-/// How long a node waits for a thread that should end: the network may block the thread for 10 s.
+/// How long a node waits for a thread that should end; the network may block the thread for 10 s.
 const END_MAX: Duration = Duration::from_millis(1200);
 
-/// A thread that is joined on drop, unless it does not end soon. Its work must be over by then.
+/// A thread that is joined when dropped, unless it does not end soon. Its work must be done by
+/// then.
 pub struct NodeThread {
     is_done: Arc<Watched<bool>>,
     handle: Option<JoinHandle<()>>,

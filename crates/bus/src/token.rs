@@ -21,10 +21,10 @@ use thiserror::Error;
 
 /// The environment variable that holds the token for the commands of a game.
 pub const TOKEN_VARIABLE: &str = "SQUALL_TOKEN";
-/// How long a proof is valid after the challenge: an intercepted one cannot be used later. A round
-/// trip takes less.
+/// Lifetime of a proof after the challenge: an intercepted proof cannot be used later. A round trip
+/// takes less.
 const GOOD_FOR: Duration = Duration::from_millis(900);
-/// Attempts at a request whose proofs arrive too late, as from a busy machine.
+/// Maximum attempts at a request whose proofs arrive too late, as on a busy machine.
 pub const ATTEMPTS: usize = 5;
 /// Maximum number of open challenges; the oldest are discarded first.
 const OPEN_MAX: usize = 1024;
@@ -33,7 +33,7 @@ const OPEN_MAX: usize = 1024;
 #[derive(Clone, PartialEq, Eq)]
 pub struct Token([u8; 32]);
 
-/// A text that is not a token.
+/// A string that is not a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "not a token ({0} characters), expected the 64 hexadecimal digits that `squall sim` prints"
@@ -49,7 +49,7 @@ impl Token {
         Token(random_bytes())
     }
 
-    /// Its 64 hexadecimal digits, which grant every right to their reader.
+    /// The token's 64 hexadecimal digits, which give every right to anyone who reads them.
     pub fn hex(&self) -> String {
         hex(&self.0)
     }
@@ -57,9 +57,9 @@ impl Token {
     fn mac(&self, parts: &[&[u8]]) -> Hmac<Sha256> {
         let mut mac = Hmac::<Sha256>::new_from_slice(&self.0).expect("a key of any length will do");
         for part in parts {
-            // With its length, so that different lists of parts cannot encode to the same bytes.
-            // A password in a message could be read and reused; a number used once, and a MAC under
-            // the secret, cannot.
+            // Include the length, so that different lists of parts cannot encode to the same bytes.
+            // A password in a message could be read and reused; a number used once with a MAC under
+            // the secret cannot.
             mac.update(&(part.len() as u64).to_le_bytes());
             mac.update(part);
         }
@@ -72,7 +72,7 @@ impl Token {
     }
 
     /// Whether `mac` is the HMAC-SHA256 of these parts under the token; takes equally long for
-    /// every wrong one.
+    /// every wrong `mac`.
     pub(crate) fn verifies(&self, parts: &[&[u8]], mac: &[u8]) -> bool {
         // `verify_slice` takes constant time; `==` would reveal the position of the first
         // difference to an attacker.
@@ -137,7 +137,7 @@ pub(crate) struct Proof {
     pub(crate) mac: String,
 }
 
-/// The wire format of a request: JSON, with the body as its sender spelled it.
+/// The wire format of a request: JSON, with the body exactly as its sender wrote it.
 #[derive(Debug, Serialize, Deserialize)]
 struct Request {
     body: Box<RawValue>,
@@ -162,7 +162,7 @@ pub(crate) fn first<T: Serialize>(body: &T) -> Vec<u8> {
 }
 
 /// Sends a request on `key` through `ask`, and proves knowledge of the token if challenged; returns
-/// the answer, or `None` if none arrives.
+/// the answer, or `None` without one.
 ///
 /// # Errors
 /// The errors of `ask`, or [`BusError`] if a required token is missing or wrong, or if the answer
@@ -193,7 +193,7 @@ pub fn request<B: Serialize, T: DeserializeOwned>(
     Err(BusError::WrongToken)
 }
 
-/// The request on `key` again, with the proof that a challenge asks for.
+/// The request on `key` again, with the proof requested by a challenge.
 fn proven<T: Serialize>(token: &Token, key: &str, body: &T, challenge: String) -> Vec<u8> {
     let body = spelled(body);
     let proof = Some(token.prove(challenge, key, body.get().as_bytes()));
@@ -212,7 +212,7 @@ pub enum Checked<T> {
     Granted(T),
     /// The answer to send: a challenge.
     Challenged(Vec<u8>),
-    /// Not a request of this kind.
+    /// Not a request of the expected type.
     Garbage(serde_json::Error),
 }
 
@@ -224,7 +224,7 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// A guard for this token; without one it admits every request.
+    /// A guard for this token; without a token it admits every request.
     pub fn new(token: impl Into<CurrentToken>) -> Guard {
         Guard {
             token: token.into(),
@@ -259,7 +259,7 @@ impl Guard {
                 .iter()
                 .position(|(challenge, _)| *challenge == proof.challenge)
         {
-            // Before the proof is verified: a challenge is valid for one attempt, right or wrong.
+            // Before verifying the proof: a challenge is valid for one attempt, right or wrong.
             self.open.remove(i);
             if token.is_proven(&proof, key, body.get().as_bytes()) {
                 return Checked::Granted(request);
@@ -327,7 +327,7 @@ mod tests {
         challenge
     }
 
-    /// The reply of a node with this token to a challenge.
+    /// The reply to a challenge from a node with this token.
     fn proven(guard: &mut Guard, token: &Token, body: &str) -> Vec<u8> {
         super::proven(token, KEY, &body, challenge(guard, &first(&body)))
     }
@@ -457,7 +457,7 @@ mod tests {
             proof.mac,
             "c5c85c75544a5893559866cd73c08baec4f04276dd346c726a156e722f60ac4f"
         );
-        // RFC 4231, test case 1, of the MAC alone.
+        // RFC 4231, test case 1, for the MAC alone.
         let mut mac = Hmac::<Sha256>::new_from_slice(&[0x0b; 20]).expect("a key");
         mac.update(b"Hi There");
         let want = "b0344c61d8db38535ca8afceaf0bf12b881dc200c9833da726e9376c2e32cff7";

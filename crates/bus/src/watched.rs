@@ -1,4 +1,4 @@
-//! A value that callbacks change, and that a node reads or waits on until a condition holds.
+//! A value that callbacks change and that a node reads, or waits on until a condition holds.
 
 use crate::clock;
 use crate::runtime::runtime;
@@ -29,7 +29,7 @@ impl<T> Watched<T> {
         result
     }
 
-    /// Waits up to `limit` until `holds`, and returns whether it does.
+    /// Waits up to `limit` until `holds`; returns whether it does.
     pub fn wait(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
         let runtime = runtime();
         let deadline = clock::now().checked_add(limit);

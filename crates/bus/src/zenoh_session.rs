@@ -78,9 +78,9 @@ impl ZenohSession {
         priority: Priority,
         delivery: Delivery,
     ) -> Result<ZenohSender, BusError> {
-        // Senders repeat what must arrive: in lockstep the sim repeats pictures and agents repeat
-        // answers, and in real time a newer message follows. A waiting message would block the
-        // thread that serves all links.
+        // Senders repeat messages that must arrive: in lockstep the sim repeats pictures and agents
+        // repeat answers, and in real time a newer message follows. A waiting message would block
+        // the thread that serves all links.
         let builder = self
             .0
             .declare_publisher(key.clone())
@@ -187,15 +187,15 @@ impl Session for ZenohSession {
             Priority::Normal => qos::Priority::DataLow,
         };
         let query = self.0.get(key).payload(question.bytes).timeout(limit);
-        // All queryables are queried, and each answer is passed on as it arrives: a silent one does
-        // not delay the others.
+        // All queryables are queried, and each answer is passed on as it arrives, so a silent
+        // queryable does not delay the others.
         let query = query
             .target(QueryTarget::All)
             .consolidation(ConsolidationMode::None);
         let query =
             query.attachment((!question.attachment.is_empty()).then_some(question.attachment));
-        // `express`: not held back to fill a batch. A query is small, and its sender waits for the
-        // answer.
+        // `express`: do not hold the query back to fill a batch. It is small, and its sender waits
+        // for the answer.
         let query = query
             .congestion_control(CongestionControl::Drop)
             .priority(priority)
@@ -232,7 +232,7 @@ impl Session for ZenohSession {
     }
 
     fn watch_links(&self, receive: OnLinkLost) -> Result<Declaration, BusError> {
-        // The link, not a liveliness token: any node could show a token in the name of an agent,
+        // The link, not a liveliness token: any node could declare a token in the name of an agent,
         // and the link of a dead process ends immediately.
         let callback = move |event: zenoh::session::TransportEvent| {
             if event.kind() == SampleKind::Delete {

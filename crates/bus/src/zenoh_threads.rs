@@ -11,18 +11,18 @@ pub const RUNTIME_VARIABLE: &str = "ZENOH_RUNTIME";
 /// A value of [`RUNTIME_VARIABLE`] for a process that is one node: few threads in place of zenoh's
 /// pools, which shortens a lockstep round trip by a quarter to a half. Reception has its own
 /// thread: a hub that forwards a large message waits in it for a free slot at the sender, which
-/// then needs another thread. Accepting links has its own thread too: a link that is never
-/// completed is closed with its linger time on.
+/// then needs a second thread. Accepting links also has its own thread: a link that is never
+/// completed is closed with its linger time enabled.
 pub const RUNTIME: &str =
-    // One pool of two threads for everything was tried. A hub that forwarded an answer of half a
-    // megabyte had both waiting for a free slot in the sender's queue, which had no thread left,
-    // and all agents were lost for three seconds.
+    // One pool of two threads was tried for everything. When a hub forwarded an answer of half a
+    // megabyte, both threads waited for a free slot in the sender's queue, the sender had no thread
+    // left, and all agents were lost for three seconds.
     "(rx:(worker_threads:1),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
 /// The same for the hub of a game paced by the clock: it may include real boats, and people must be
-/// able to stop them. A receiving thread serves no other link while the one it reads has data: each
-/// peer that sends without pause occupies one, and an E-stop needs another. In lockstep, where the
-/// second one costs time, all boats are simulated.
+/// able to stop them. A receiving thread serves no other link while its current link has data: each
+/// peer that sends without pause occupies one thread, and an E-stop needs a free one. In lockstep,
+/// where a second thread costs time, all boats are simulated.
 pub const HUB_RUNTIME: &str =
     // Measured with 250 E-stops under 400,000 messages of garbage a second: 12.4 ms (median) to 124
     // ms with one receiving thread, less than 0.1 ms to 6.6 ms with two.
@@ -30,16 +30,16 @@ pub const HUB_RUNTIME: &str =
 
 /// The same for a process with keys. zenoh (1.10, `zenoh-link-tls`) reads and writes a TLS link at
 /// once through one object that is not thread-safe: with two threads, rustls' state is overwritten
-/// and the process dies. Therefore one thread does everything.
+/// and the process dies. Therefore a single thread does everything.
 pub(crate) const KEYS_RUNTIME: &str =
-    // With two threads and sixteen agents in lockstep the sim died within a minute. Upstream, the
-    // stream should be split, or one lock held for both halves; QUIC, which has an object per
-    // direction, is the alternative.
+    // With two threads and sixteen agents in lockstep the sim died within a minute. Upstream should
+    // split the stream, or use one lock for both halves; the alternative is QUIC, which has one
+    // object per direction.
     "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
 /// Restarts this program in the same process, with the same arguments and the threads required for
-/// a node with keys. Returns immediately if it has them. Call it first of all: the restart discards
-/// all state of the process.
+/// a node with keys. Returns immediately if it already has these. Call it before anything else: the
+/// restart discards all state of the process.
 ///
 /// # Errors
 /// [`BusError::Threads`] if the program cannot be restarted.

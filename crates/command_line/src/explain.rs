@@ -119,7 +119,7 @@ fn problem(problem: &Problem) -> String {
     format!("{told}\n{shown}")
 }
 
-/// The part of a line to underline, in bytes: a word, or a text with its quotes.
+/// The byte range of a line to underline: a word, or a string with its quotes.
 fn span(source: &str, column: usize) -> Option<std::ops::Range<usize>> {
     let start = source
         .char_indices()

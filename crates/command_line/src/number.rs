@@ -54,8 +54,7 @@ pub fn address(text: &str) -> Result<SocketAddr, String> {
 
 /// Parses the endpoint of a node from the command line.
 ///
-/// # Errors
-/// If it is not a known protocol, a host and a port.
+/// If it does not consist of a known protocol, a host and a port.
 pub fn endpoint(text: &str) -> Result<String, String> {
     const PROTOCOLS: [&str; 4] = ["tcp", "quic", "tls", "udp"];
     let (protocol, address) = text.split_once('/').unwrap_or_default();
@@ -75,7 +74,7 @@ pub fn endpoint(text: &str) -> Result<String, String> {
 /// Parses the name or the IP address of a machine from the command line.
 ///
 /// # Errors
-/// If it has characters that names and addresses cannot have.
+/// If it contains characters not allowed in names and addresses.
 pub fn host(text: &str) -> Result<String, String> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.:".contains(c);
     let is_host = !text.is_empty() && text.chars().all(is_plain);
@@ -84,7 +83,7 @@ pub fn host(text: &str) -> Result<String, String> {
         .ok_or_else(|| "expected a name or an IP address, such as boat.local".to_owned())
 }
 
-/// A measured or statistical number as text with two significant digits, as in 1.5, 0.031 or 190.
+/// Formats a measured or statistical number with two significant digits, as in 1.5, 0.031 or 190.
 pub fn significant(number: f64) -> String {
     let text = format!("{number:.1e}");
     let exponent: i32 = text

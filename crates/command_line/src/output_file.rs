@@ -11,7 +11,7 @@ pub fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
         .with_context(|| format!("cannot write {what} to {}", path.display()))
 }
 
-/// Checks that a file is writable, before hours of games; leaves it unchanged.
+/// Checks, before games that take hours, that a file is writable; leaves it unchanged.
 pub fn check(path: &Path, what: &str) -> Result<()> {
     let is_new = match std::fs::metadata(path) {
         // Opening a pipe would block.

@@ -4,10 +4,10 @@
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-/// Upper bound of messages waiting to be printed; more are dropped.
+/// Maximum number of messages waiting to be printed; further ones are dropped.
 const WAITING_MAX: usize = 1024;
 
-/// Prints in its own thread.
+/// Prints in a separate thread.
 pub struct Printer<M> {
     messages: SyncSender<M>,
     thread: JoinHandle<()>,
@@ -23,14 +23,14 @@ impl<M: Send + 'static> Printer<M> {
 
     /// Prints a message, or drops it if too many are waiting.
     pub fn print(&self, message: M) {
-        // All events are also in the result of a game, and in the recording of a gateway.
+        // The result of a game and the recording of a gateway also contain all events.
         drop(self.messages.try_send(message));
     }
 
     /// Prints the last message, after all waiting ones.
     pub fn end(self, message: M) {
-        // The thread receives messages as long as this exists; if it panicked, it has reported
-        // that.
+        // The thread receives messages as long as the printer exists; a panic of the thread has
+        // already been reported.
         drop(self.messages.send(message));
         drop(self.messages);
         drop(self.thread.join());

@@ -23,7 +23,7 @@ pub fn gateway() -> &'static str {
         .map_or("squall gateway", |[_, gateway]| gateway)
 }
 
-/// Replaces `{gateway}` in a text by the prefix of gateway commands.
+/// Replaces `{gateway}` in a string with the prefix of gateway commands.
 pub fn text(template: &str) -> String {
     template.replace("{gateway}", gateway())
 }

@@ -30,7 +30,7 @@ pub fn runs(folder: &Path) -> Vec<PathBuf> {
     runs
 }
 
-/// The name of a recording: that of its file, without the extension.
+/// The name of a recording: its file name without the extension.
 pub fn stem(path: &Path) -> String {
     path.file_stem()
         .unwrap_or_default()
@@ -38,7 +38,7 @@ pub fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-/// Parses an argument that names a recording: a path, or a part of a name in `runs`, which selects
+/// Parses an argument that names a recording: a path, or part of a name in `runs`, which selects
 /// the newest match.
 pub fn named(word: &str) -> Result<PathBuf> {
     let path = Path::new(word);
@@ -53,7 +53,7 @@ pub fn named(word: &str) -> Result<PathBuf> {
     })
 }
 
-/// The given recording, or the newest in `runs`, which it names.
+/// The given recording, or the newest in `runs`, whose name is then printed.
 pub fn or_newest(given: Option<&Path>) -> Result<PathBuf> {
     if let Some(path) = given {
         return Ok(path.to_owned());
@@ -84,7 +84,7 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
         Bag::open(file)
     };
     let bag = opened.map_err(|error| match error {
-        // These errors name the file.
+        // These errors already name the file.
         RecordingError::File { .. } | RecordingError::Log(_) => Error::new(error),
         error => Error::new(error).context(format!("cannot {to} {}", file.display())),
     })?;
@@ -104,7 +104,7 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     Ok(bag)
 }
 
-/// MOOS logs of a game, and the file of the game beside them.
+/// MOOS logs of a game, and the game file in their folder.
 struct Logs {
     files: Vec<PathBuf>,
     game: Option<PathBuf>,
@@ -122,7 +122,7 @@ fn logs(path: &Path) -> Result<Logs> {
         files.filter_map(Result::ok).map(|file| file.path())
     };
     let is_game = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
-    // Of several, the first by name: folders are listed in no particular order.
+    // If there are several, take the first by name: folders are listed in no particular order.
     let game = listed(folder).filter(is_game).min();
     let mut files: Vec<PathBuf> = if path.is_dir() {
         listed(path)

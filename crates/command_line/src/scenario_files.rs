@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
-/// The folder searched for named files, in the current folder and its parents.
+/// The folder searched for names, in the current folder and its parents.
 const FOLDER: &str = "scenarios";
 /// The extension of scenario files.
 const TOML: &str = "toml";
@@ -20,10 +20,10 @@ const POLICIES: (&str, &str) = ("policies", "onnx");
 /// The kinds of files that the program knows.
 static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 
-/// Makes the built-in files available where files on the disk are missing, and sets the kinds of
-/// files by which a file of the wrong kind is recognised.
+/// Makes the built-in files available where files on disk are missing, and registers the known
+/// kinds, so that a file of the wrong kind is recognised.
 pub fn install(kinds: &'static [Kind]) {
-    // An earlier caller installed the same kinds: a process runs one program.
+    // An earlier caller installed the same kinds: a process runs only one program.
     let _ = KINDS.set(kinds);
     set_built_in(
         |name| FILES.get_file(name).map(include_dir::File::contents),
@@ -31,8 +31,8 @@ pub fn install(kinds: &'static [Kind]) {
     );
 }
 
-/// Announces, once per path, that a file on the disk overrides a built-in one. Child processes
-/// leave this to their parent.
+/// Announces, once per path, that a file on disk overrides a built-in one. Child processes leave
+/// this to their parent.
 pub fn announce(path: &Path) {
     static ANNOUNCED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let is_child = std::env::args_os().any(|word| word == "--for-parent");
@@ -65,13 +65,13 @@ pub fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
         .map(include_dir::File::contents)
 }
 
-/// Finds the file that an argument names: a path, or a name in `scenarios` here, in a parent
-/// folder, or built in.
+/// Finds the file that an argument names: a path, or a name in `scenarios` in the current folder,
+/// in a parent folder, or built in.
 pub fn find(word: &str, kind: Kind) -> Result<PathBuf> {
     find_beside(word, kind, None)
 }
 
-/// The same, but searches the folder `beside` first for a name.
+/// Like [`find`], but first searches the folder `beside` for a name.
 pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if kind == Kind::STRATEGY {
@@ -151,13 +151,13 @@ pub fn find_policy(word: &str) -> Result<PathBuf> {
 /// Whether an argument is a path, not a name.
 fn is_path(word: &str, extension: &str) -> bool {
     let path = Path::new(word);
-    let ends_so = path
+    let has_extension = path
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case(extension));
-    word.contains(['/', '\\']) || ends_so || path.is_file()
+    word.contains(['/', '\\']) || has_extension || path.is_file()
 }
 
-/// The folders on the disk in which a name is looked up, nearest first.
+/// The folders on disk in which a name is looked up, nearest first.
 fn folders(folder: &str, beside: Option<&Path>) -> Vec<PathBuf> {
     let here = std::env::current_dir().unwrap_or_default();
     let above = here
@@ -170,7 +170,7 @@ fn folders(folder: &str, beside: Option<&Path>) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The file of this name in a folder of `scenarios`, on the disk or built in.
+/// The file of this name in a folder of `scenarios`, on disk or built in.
 fn located(
     name: &str,
     (folder, extension): (&str, &str),
@@ -215,7 +215,7 @@ fn unknown(word: &str, kind: Kind, beside: Option<&Path>) -> anyhow::Error {
     anyhow!("no {kind} named {word:?}{list}")
 }
 
-/// The places where a file of a kind is accepted.
+/// The places where a file of the given kind is accepted.
 fn where_it_goes(kind: Kind) -> String {
     let place = match kind.name() {
         "game" => "play it with squall run",
@@ -231,7 +231,7 @@ fn where_it_goes(kind: Kind) -> String {
     format!("; {}", program::text(place))
 }
 
-/// The names of the built-in files of a kind.
+/// The names of the built-in files of the given kind.
 pub fn names(kind: Kind) -> BTreeSet<String> {
     built_in_names(kind.folder(), TOML)
 }
@@ -248,7 +248,8 @@ fn built_in_names(folder: &str, extension: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The user's own files of a kind by name: those on the disk that are not copies of built-in ones.
+/// The user's own files of the given kind by name: files on disk that are not copies of built-in
+/// ones.
 pub fn own(kind: Kind) -> BTreeMap<String, PathBuf> {
     let names = folders(kind.folder(), None)
         .into_iter()
@@ -263,7 +264,7 @@ pub fn own(kind: Kind) -> BTreeMap<String, PathBuf> {
         .collect()
 }
 
-/// The names of all files of a kind, on the disk and built in.
+/// The names of all files of the given kind, on disk and built in.
 pub fn all_names(kind: Kind) -> BTreeSet<String> {
     own(kind).into_keys().chain(names(kind)).collect()
 }

@@ -33,7 +33,7 @@ pub fn exit_when_late(stop: &Arc<AtomicBool>) {
     when_late(stop, || std::process::exit(130));
 }
 
-/// Takes effect if the command has not ended soon after the flag is set.
+/// Calls `act` if the command has not ended soon after the flag is set.
 pub fn when_late(stop: &Arc<AtomicBool>, act: impl FnOnce() + Send + 'static) {
     const LATE: Duration = Duration::from_millis(1400);
     let flag = Arc::clone(stop);
@@ -44,7 +44,7 @@ pub fn when_late(stop: &Arc<AtomicBool>, act: impl FnOnce() + Send + 'static) {
     });
 }
 
-/// The same flag; in a child process, the end of standard input sets it too.
+/// Like [`on_ctrl_c`]; in a child process, the end of standard input sets the flag too.
 pub fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> {
     let stop = on_ctrl_c()?;
     if for_parent {
@@ -54,7 +54,7 @@ pub fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> 
 }
 
 /// Sets the flag when standard input ends, since a child must not outlive its parent. Returns the
-/// lines that the parent sends before.
+/// lines that the parent sends until then.
 pub fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
     let flag = Arc::clone(stop);
     let (sender, lines) = channel();

@@ -1,5 +1,5 @@
-//! Terminal colours: teams, and the severity of messages. The writer omits them where they cannot
-//! be shown.
+//! Terminal colours: teams, and the severity of messages. They are omitted on output if the
+//! terminal cannot show them.
 
 use scenario::Scenario;
 use std::collections::BTreeMap;
@@ -11,22 +11,22 @@ const WARNING: &str = "\x1b[33m";
 const GOOD: &str = "\x1b[32m";
 const PLAIN: &str = "\x1b[0m";
 
-/// Text in a team's colour.
+/// A string in a team's colour.
 pub fn team(team: usize, text: &str) -> String {
     within(TEAMS[team % TEAMS.len()], text)
 }
 
-/// Text about a failure.
+/// A string in the colour of failures.
 pub fn bad(text: &str) -> String {
     within(BAD, text)
 }
 
-/// Text about a possible failure.
+/// A string in the colour of possible failures.
 pub fn warning(text: &str) -> String {
     within(WARNING, text)
 }
 
-/// Text about a success.
+/// A string in the colour of success.
 pub fn good(text: &str) -> String {
     within(GOOD, text)
 }
@@ -54,7 +54,7 @@ impl Names {
         Names(boats.chain(teams).collect())
     }
 
-    /// Text in which each of these names has its team's colour.
+    /// `text` with each of these names in its team's colour.
     pub fn paint(&self, text: &str) -> String {
         let is_end = |character: char| !(character.is_ascii_alphanumeric() || character == '_');
         let word = |piece: &str| {

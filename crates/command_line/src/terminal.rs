@@ -8,7 +8,7 @@ use primitives::printable;
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 
-/// The first error of standard output, except that its reader has closed it.
+/// The first error of standard output, other than its reader having closed it.
 static OUTPUT_ERROR: OnceLock<std::io::Error> = OnceLock::new();
 
 /// Checks that everything printed so far was written. `main` calls it last, so that a full disk is
@@ -40,13 +40,13 @@ pub fn overwrite(text: &str) {
     is_written("\r\x1b[K", &printable::coloured(text));
 }
 
-/// Replaces the terminal's content by a page, which may contain colours, and returns whether the
+/// Replaces the terminal's content with a page, which may contain colours, and returns whether the
 /// output is still open.
 pub fn is_seen(page: &str) -> bool {
     is_written("\x1b[H\x1b[J", &printable::coloured(page))
 }
 
-/// Sets when texts have colours; with `Auto`, if the terminal supports them and `NO_COLOR` is
+/// Sets when output has colours; `Auto` means if the terminal supports them and `NO_COLOR` is
 /// unset.
 pub fn set_colour(choice: clap::ColorChoice) {
     let choice = match choice {
@@ -57,7 +57,7 @@ pub fn set_colour(choice: clap::ColorChoice) {
     choice.write_global();
 }
 
-/// Writes control sequences and a text, without its colours where they cannot be shown.
+/// Writes control sequences and a string, without its colours if they cannot be shown.
 fn is_written(control: &str, text: &str) -> bool {
     let mut out = std::io::stdout().lock();
     let steered = out.write_all(control.as_bytes());
@@ -80,7 +80,7 @@ pub fn complain(text: &str) {
     complain_as(program::name(), text);
 }
 
-/// Prints an error, with this word instead of the program's name.
+/// Prints an error, prefixed with `who` instead of the program's name.
 pub fn complain_as(who: &str, text: &str) {
     let text = printable::coloured_message(text);
     drop(writeln!(
@@ -90,7 +90,7 @@ pub fn complain_as(who: &str, text: &str) {
     ));
 }
 
-/// Prints a text to standard error, so that it does not mix with results.
+/// Prints a string to standard error, so that it does not mix with results.
 pub fn remark(text: &str) {
     drop(writeln!(
         anstream::stderr(),

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The minimum number of observations for an interval: fewer are often all equal, and would seem
-/// certain.
+/// The minimum number of observations for an interval: with fewer, all are often equal and would
+/// seem certain.
 pub(crate) const OBSERVATIONS_MIN: usize = 5;
 
 /// The mean of independent observations with its 95 % confidence interval, by Student's t.
@@ -28,9 +28,9 @@ impl Estimate {
         assert!(count > 0, "a mean needs values");
         let (mean, squares) = mean_and_squares(observations);
         let degrees = count as f64 - 1.0;
-        // Over seeds: all games with the same seed have the same sea, which may favour an entry
-        // from both sides and against all opponents alike. The interval covers other seeds, not
-        // other opponents, which are chosen and not drawn.
+        // Observations are seeds: all games with the same seed have the same sea, which may favour
+        // an entry from both sides and against all opponents. The interval covers other seeds, not
+        // other opponents, which are chosen, not drawn.
         let quantile = quantile(degrees).filter(|_| count >= OBSERVATIONS_MIN);
         let half = quantile.map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate {
@@ -62,7 +62,8 @@ impl Estimate {
         })
     }
 
-    /// The mean and half the width of any interval, multiplied, with this number of decimal places.
+    /// The mean and half the width of any interval, multiplied by `times`, with this many decimal
+    /// places.
     pub(crate) fn shown(&self, times: f64, digits: usize) -> String {
         let half = self.half_width().map_or(String::new(), |half| {
             format!(" ± {:.digits$}", half * times)
@@ -88,7 +89,7 @@ pub(crate) fn mean_and_squares(numbers: &[f64]) -> (f64, f64) {
     )
 }
 
-/// Half width of a 95 % interval in standard errors, by Student's t; `None` without degrees of
+/// Half the width of a 95 % interval in standard errors, by Student's t; `None` without degrees of
 /// freedom.
 pub(crate) fn quantile(degrees: f64) -> Option<f64> {
     StudentsT::new(0.0, 1.0, degrees)
@@ -100,12 +101,13 @@ pub(crate) fn quantile(degrees: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Tables give four decimal places.
+    /// Published tables give four decimal places.
     const TABLE: f64 = 0.00005;
 
     #[test]
     fn the_interval_is_that_of_the_tables_of_student() {
-        // Equally many observations of 0 and 1: the deviation is known, and the quantile follows.
+        // With equally many observations of 0 and 1, the deviation is known, and the quantile
+        // follows.
         for (count, quantile) in [
             (6, 2.5706),
             (10, 2.2622),

@@ -5,10 +5,10 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Upper bound of threads per core: more would only take turns.
+/// Maximum number of threads per core: more would only take turns.
 const PER_CORE_MAX: usize = 4;
 
-/// Upper bound of the games of an experiment, whose results are kept in memory.
+/// Maximum number of games of an experiment, whose results are kept in memory.
 const GAMES_MAX: usize = 4_000_000;
 
 /// The names of a game's teams, the first one first.
@@ -20,8 +20,8 @@ pub(crate) fn teams_of(game: &Path, files: &Arc<Files>) -> Result<Vec<String>, P
         .collect())
 }
 
-/// Checks that a game has no real boats, which cannot be played here; otherwise it is a problem of
-/// `file`.
+/// Checks that a game has no real boats, which cannot take part in experiments; otherwise reports a
+/// problem of `file`.
 pub(crate) fn load_game(
     game: &Path,
     overrides: &Overrides,
@@ -45,7 +45,7 @@ pub(crate) fn too_many_games(games: usize, file: &Path) -> Option<Problem> {
     (games > GAMES_MAX).then(|| Problem::of_file(file.to_owned(), message()))
 }
 
-/// The option of a command that gives a team its strategy, with a space before it.
+/// The command option that gives a team its strategy, preceded by a space.
 pub(crate) fn strategy_option(team: &str, file: &str) -> String {
     if ["blue", "red"].contains(&team) {
         format!(" --{team} {file}")

@@ -1,4 +1,4 @@
-//! Experiments: many games, the measurements of each, and statistics over all.
+//! Experiments: many games, measurements of each, and statistics over all of them.
 //!
 //! A plan lists the games. The pipeline plays them on all cores and returns a row for each, in
 //! order. Reports are made from rows: [`tournament`] ranks strategies and keeps the games of a

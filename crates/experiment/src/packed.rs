@@ -9,13 +9,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// A sweep or a tournament with all required files; unpacking it reads no others.
+/// A sweep or a tournament with all required files; unpacking it reads no other files.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Packed {
     /// The checked file as JSON.
     pub spec: String,
-    /// All required files in the order in which they are requested: a file comes before those it
-    /// names. In JSON a file is its path and its text, or its bytes in base64.
+    /// All required files, in the order in which they are requested: a file precedes those that it
+    /// names. In JSON a file is its path with its content as a string, or as bytes in base64.
     #[serde(serialize_with = "write_files", deserialize_with = "read_files")]
     pub files: Vec<(PathBuf, Vec<u8>)>,
     /// The plan's digest.
@@ -31,7 +31,7 @@ pub enum UnpackError {
     /// The game cannot be read from the packed files.
     #[error("{0}")]
     Game(#[from] Problems),
-    /// The unpacked plan has another digest.
+    /// The unpacked plan has a different digest.
     #[error(
         "the packed games differ on this machine: expected digest {expected}, found {found}; \
          both machines need the same version of Squall, and this one has {}",
@@ -49,7 +49,7 @@ impl Packed {
     /// Packs the plan of a checked file.
     ///
     /// # Panics
-    /// If `spec` cannot be written as JSON because its maps have keys that are not texts.
+    /// If `spec` cannot be written as JSON because its maps have keys that are not strings.
     pub fn new(spec: &impl Serialize, files: Vec<(PathBuf, Arc<[u8]>)>, digest: String) -> Packed {
         Packed {
             spec: serde_json::to_string(spec).expect("it has names for keys"),
@@ -61,11 +61,11 @@ impl Packed {
         }
     }
 
-    /// The plan that `plan` makes from the checked file and the packed files; `digest` identifies
+    /// The plan that `plan` creates from the checked file and the packed files; `digest` identifies
     /// it.
     ///
     /// # Errors
-    /// [`UnpackError`] if it is damaged or was packed by another version of Squall.
+    /// [`UnpackError`] if it is damaged or was packed by a different version of Squall.
     pub fn unpack<S: DeserializeOwned, P>(
         self,
         plan: impl FnOnce(&S, Arc<Files>) -> Result<P, Problems>,
@@ -76,7 +76,7 @@ impl Packed {
             Arc::new(Files::kept(self.files)),
         )?;
         let found = digest(&plan);
-        // The digest of plan and files shows whether two versions agree on the games.
+        // The digest of plan and files shows whether the two versions agree on the games.
         if found == self.digest {
             Ok(plan)
         } else {

@@ -1,6 +1,6 @@
 //! Plays the games of an experiment on several threads and returns them in order.
 //!
-//! Tournaments, leagues and sweeps define the games and their measurements; this plays them.
+//! Tournaments, leagues and sweeps define the games and their measurements; this module plays them.
 //! Results do not depend on the number of threads.
 
 use agent::MindRunner;
@@ -57,7 +57,7 @@ impl Stop<'_> {
 }
 
 /// Plays a scenario with a seed. `see` receives the contest and the minds before every decision and
-/// at the end. The error says why the game could not start.
+/// at the end. The error states why the game could not start.
 pub(crate) fn play_game(
     scenario: &Scenario,
     seed: u64,
@@ -77,7 +77,7 @@ pub(crate) fn play_game(
 }
 
 /// Plays the games numbered from 0 to `count` - 1 on several threads, until all are played or
-/// `stop` is set, and passes each row to `take` in order. `play` plays one game, with the state
+/// `stop` is set, and passes each row to `take` in order. `play` plays one game, using the state
 /// that its thread keeps between games. Games cut short by `stop`, and all after them, yield no
 /// rows.
 ///
@@ -89,7 +89,7 @@ pub(crate) fn play_in_order<K: Default, R: Send, E>(
     play: impl Fn(&mut K, usize, Stop<'_>) -> R + Sync,
     mut take: impl FnMut(R) -> Result<(), E>,
 ) -> Result<(), E> {
-    /// Upper bound of rows queued for `take`.
+    /// Maximum number of rows queued for `take`.
     const QUEUE: usize = 64;
     let next = AtomicUsize::new(0);
     let refused = AtomicBool::new(false);

@@ -1,5 +1,5 @@
-//! Turning points: how the chance of winning changed during a recorded game, and what each boat
-//! added to it, both from futures of many of its moments.
+//! Turning points: how the chance of winning changed during a recorded game, and how much each boat
+//! contributed, estimated from futures of many moments.
 
 use crate::Estimate;
 use crate::pipeline::{Game, play_in_order};
@@ -17,38 +17,38 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The shortest time between two moments with futures, s.
+/// Minimum time between two moments with futures, s.
 const STEP_S: f64 = 5.0;
-/// Moments on each side whose futures count for a change.
+/// Number of moments on each side whose futures are used for a change.
 const WINDOW: usize = 3;
-/// Changes that get more futures in each round.
+/// Number of changes that get more futures in each round.
 const REFINED: usize = 6;
 /// Maximum number of reported turning points.
 const REPORTED: usize = 5;
 /// The 97.5 % quantile of the normal distribution.
 const NORMAL_975: f64 = 1.96;
 
-/// What to play.
+/// The games to play.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Total number of futures for the curve.
     pub futures: usize,
     /// Futures for each boat: from the start, once as recorded and once with the baseline.
     pub futures_of_boat: usize,
-    /// The strategy that replaces each boat's in turn.
+    /// The strategy that replaces each boat's strategy in turn.
     pub baseline: Strategy,
 }
 
 /// The development of a recorded game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// The teams. Chances are those of the first; a draw counts half.
+    /// The teams. Chances are the first team's; a draw counts half.
     pub teams: [String; 2],
     /// The chance of winning over time.
     pub curve: Vec<Point>,
     /// The largest changes whose intervals exclude zero, by time.
     pub turning_points: Vec<TurningPoint>,
-    /// What each boat added, by vehicle index.
+    /// Each boat's contribution, by vehicle index.
     pub boats: Vec<Added>,
 }
 
@@ -58,7 +58,7 @@ pub struct Point {
     /// Time, s.
     pub at_s: f64,
     /// The first team's chance with its 95 % interval, from the futures of this moment and its
-    /// neighbours. After the game, its result.
+    /// neighbours. At the end of the game, its result.
     pub chance: Estimate,
     /// Number of futures from this moment.
     pub futures: usize,
@@ -69,15 +69,15 @@ pub struct Point {
 pub struct TurningPoint {
     /// The time before the change, s.
     pub from_s: f64,
-    /// The time after it, s.
+    /// The time after the change, s.
     pub to_s: f64,
     /// The chances before and after.
     pub chance: [f64; 2],
-    /// Their difference with its 95 % interval.
+    /// The difference of the chances, with its 95 % interval.
     pub change: Estimate,
     /// The events of that time.
     pub events: Vec<EventOutcome>,
-    /// What boats were doing: those of the events, or all.
+    /// What the boats involved in the events were doing, or else all boats.
     pub decisions: Vec<BoatDecision>,
 }
 
@@ -88,13 +88,13 @@ pub struct BoatDecision {
     pub vehicle: String,
     /// The helm's mode.
     pub mode: String,
-    /// Heading, compass degrees; none if the boat holds.
+    /// Course, compass degrees; `None` if the boat holds.
     pub course_deg: Option<f64>,
-    /// Speed, m/s; none if the boat holds.
+    /// Speed, m/s; `None` if the boat holds.
     pub speed_m_s: Option<f64>,
 }
 
-/// What a boat added for its team, compared with the baseline in its place.
+/// A boat's contribution to its team, compared with the baseline in its place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Added {
     /// The boat.
@@ -112,14 +112,14 @@ struct Course {
     moments: Vec<Mutex<Moment>>,
     at: Vec<SimTime>,
     decisions: Vec<Vec<BoatDecision>>,
-    /// By moment: what the first team made of each future: 1 for a win, 0.5 for a draw.
+    /// By moment: the first team's result in each future: 1 for a win, 0.5 for a draw.
     values: Vec<Vec<f64>>,
     /// The end of the recorded game.
     end: Contest,
 }
 
-/// Plays the futures. `past` is the whole game. Calls `tell` after every game played, of which
-/// there are [`games`]. Returns `None` if `stop` was set.
+/// Plays the futures. `past` is the whole game. Calls `tell` after each of the [`games`] games
+/// played. Returns `None` if `stop` was set.
 ///
 /// # Errors
 /// If the game cannot start, or a mind cannot be copied.
@@ -153,7 +153,7 @@ pub fn games(scenario: &Scenario, plan: &Plan) -> usize {
 }
 
 impl Course {
-    /// Plays the game, and keeps a moment every five seconds; fewer if `futures` are few.
+    /// Plays the game, and keeps a moment every five seconds, or fewer if there are few `futures`.
     fn of(past: &Past, futures: usize) -> Result<Course, String> {
         let step_s = STEP_S.max(2.0 * past.until.as_s() / futures.max(1) as f64);
         let mut at = vec![];
@@ -187,7 +187,7 @@ impl Course {
         run: (NonZeroUsize, &AtomicBool),
         tell: &mut impl FnMut(),
     ) -> Result<(), String> {
-        // Futures of different moments with the same number have the same draws.
+        // Futures of different moments with the same number use the same random numbers.
         let mut counts: Vec<usize> = self.values.iter().map(Vec::len).collect();
         let futures: Vec<(usize, usize)> = due
             .iter()
@@ -232,7 +232,7 @@ impl Course {
         ]
     }
 
-    /// The largest changes, largest first, each away from the larger ones.
+    /// The largest changes, largest first, each far enough from larger ones.
     fn largest(&self) -> Vec<(usize, Estimate)> {
         let mut changes: Vec<(usize, Estimate)> = (0..self.at.len().saturating_sub(1))
             .map(|i| (i, difference(&self.sides(i))))
@@ -327,7 +327,7 @@ impl Course {
     }
 }
 
-/// What the first team made of a game.
+/// The value of a game for the first team.
 fn value(winner: Option<usize>) -> f64 {
     match winner {
         Some(0) => 1.0,
@@ -337,7 +337,7 @@ fn value(winner: Option<usize>) -> f64 {
 }
 
 /// The share of wins. The interval adds two wins and two losses (Agresti and Coull, The American
-/// Statistician 52, 1998): few futures that agree are not certain.
+/// Statistician 52, 1998): a few futures that agree give no certainty.
 fn share(values: &[f64]) -> Estimate {
     let [wins, count] = [values.iter().sum::<f64>(), values.len() as f64];
     let [centre, error] = moved(wins, count, 2.0);
@@ -365,13 +365,13 @@ fn difference(sides: &[Vec<f64>; 2]) -> Estimate {
     }
 }
 
-/// The share with `more` wins and losses, and its standard error.
+/// The share with `more` additional wins and losses, and its standard error.
 fn moved(wins: f64, count: f64, more: f64) -> [f64; 2] {
     let share = (wins + more) / (count + 2.0 * more);
     [share, (share * (1.0 - share) / (count + 2.0 * more)).sqrt()]
 }
 
-/// What all boats are doing.
+/// The decisions of all boats.
 fn decisions_of(scenario: &Scenario, runner: &MindRunner) -> Vec<BoatDecision> {
     let reports = runner.minds().filter_map(|(_, mind)| mind.report());
     let decision = |report: HelmReport| BoatDecision {
@@ -383,7 +383,8 @@ fn decisions_of(scenario: &Scenario, runner: &MindRunner) -> Vec<BoatDecision> {
     reports.map(decision).collect()
 }
 
-/// Compares every boat with the baseline in its place, over whole games with the same draws.
+/// Compares every boat with the baseline in its place, over whole games with the same random
+/// numbers.
 fn boats(
     past: &Past,
     start: &Mutex<Moment>,
@@ -393,7 +394,8 @@ fn boats(
 ) -> Result<Vec<Added>, String> {
     let count = past.scenario.vehicles.len();
     let mut games: Vec<Game> = vec![];
-    // In each round of games, the first is as recorded, and in each other one boat is replaced.
+    // In each round of games, the first is as recorded, and in each of the others one boat is
+    // replaced.
     play_in_order(
         plan.futures_of_boat * (count + 1),
         run,
@@ -455,7 +457,7 @@ mod tests {
         let change = difference(&sides([48, 56], [80, 70]));
         let want = [0.2, 0.0525, 0.3358];
         let got = [change.mean, change.low.unwrap(), change.high.unwrap()];
-        // By R: binom::binom.agresti.coull(0, 10), whose 1.96² more games are 4 here.
+        // By R: binom::binom.agresti.coull(0, 10), whose 1.96² additional games are 4 here.
         let none = share(&[0.0; 10]);
         let want_none = [0.0, 0.0, 0.326];
         let got_none = [none.mean, none.low.unwrap(), none.high.unwrap()];

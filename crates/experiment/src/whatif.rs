@@ -1,5 +1,5 @@
-//! Futures of a recorded game: the same past up to a given time, and then other minds and other
-//! random numbers.
+//! Futures of a recorded game: the same past up to a given time, then other minds and other random
+//! numbers.
 
 use crate::pipeline::{Game, Stop, play_in_order};
 use agent::MindRunner;
@@ -87,7 +87,7 @@ impl Fan {
     }
 }
 
-/// A game at a moment, with its minds. It continues any number of times.
+/// A game at a moment, with its minds. It can be continued any number of times.
 pub(crate) struct Moment {
     pub(crate) contest: Contest,
     runner: MindRunner,
@@ -102,8 +102,8 @@ impl Moment {
         })
     }
 
-    /// Plays the past. All minds see what they saw. Stops early when `watch`, which sees contest
-    /// and minds before every decision, returns `false`.
+    /// Plays the past. All minds see the pictures that they saw. Stops early when `watch`, which
+    /// sees contest and minds before every decision, returns `false`.
     pub(crate) fn of(
         past: &Past,
         mut watch: impl FnMut(&mut Contest, &MindRunner) -> bool,
@@ -123,7 +123,7 @@ impl Moment {
         Ok(Moment { contest, runner })
     }
 
-    /// The same moment, from which everything is drawn by `seed`.
+    /// The same moment, with all later random numbers drawn with `seed`.
     pub(crate) fn reseeded(&self, seed: u64) -> Result<Moment, String> {
         let contest = self.contest.reseeded(seed);
         Ok(Moment {
@@ -160,7 +160,7 @@ fn fork(runner: &MindRunner) -> Result<MindRunner, String> {
     copy.ok_or_else(|| "a mind of this game cannot be copied".to_owned())
 }
 
-/// Plays the past and one of its futures, in which everything is drawn by `seed`. Stops when
+/// Plays the past and one of its futures, with random numbers drawn with `seed`. Stops when
 /// `watch`, which sees the contest before every decision and at the end, returns `false`. Returns
 /// the contest. Its scenario has the seed, so that a recording of it replays, except in another sea.
 ///
@@ -185,7 +185,7 @@ pub fn play(
 /// numbers. Passes them to `take` in order.
 ///
 /// # Errors
-/// That of `take`, which ends the games, and the reason why a game cannot start.
+/// The error of `take`, which ends the games, or the reason why a game cannot start.
 pub fn compare(
     past: &Past,
     changes: &Changes,
@@ -207,7 +207,7 @@ pub fn compare(
     )
 }
 
-/// Plays on from a moment, with this seed and these changes, until the end or `stop`.
+/// Continues from a moment, with this seed and these changes, until the end or `stop`.
 pub(crate) fn future_of(
     scenario: &Scenario,
     moment: &Mutex<Moment>,
@@ -232,7 +232,7 @@ pub(crate) fn future_of(
 
 /// The seed of a future.
 pub fn seed_of(past: &Past, future: usize) -> u64 {
-    // Far from the seeds that people use, so that the first future is not that of another recorded
-    // game.
+    // Far from the seeds that people use, so that the first future does not equal a different
+    // recorded game.
     past.scenario.seed.wrapping_add(1_000_003 + future as u64) & (i64::MAX as u64)
 }

@@ -7,7 +7,7 @@ use std::ops::Range;
 const LENGTH_MAX: usize = 1 << 20;
 
 /// Edge-case numbers in the notation of TOML, JSON or CSV, words with a meaning to some reader, and
-/// characters that end a text or control a terminal when printed.
+/// characters that end a string or control a terminal when printed.
 const WORDS: [&str; 28] = [
     "0",
     "-0.0",
@@ -59,10 +59,10 @@ const NUMBERS: [u64; 16] = [
     f64::MIN_POSITIVE.to_bits(),
 ];
 
-/// An input with a few mutations, some of them by pieces of others.
+/// An input with a few mutations, some of them with pieces of others.
 pub fn change(input: &[u8], others: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = input.to_vec();
-    // Mostly few, so that inputs pass the first check.
+    // Usually few, so that mutated inputs pass the first check.
     let most = *dice.one_of(&[1, 1, 2, 3, 8]);
     for _ in 0..=dice.roll(most) {
         once(&mut bytes, others, dice);
@@ -92,7 +92,7 @@ fn once(bytes: &mut Vec<u8>, others: &[Vec<u8>], dice: &mut Dice) {
             put(bytes, &other[dice.range(other.len(), 64)], dice);
         }
         _ => {
-            // Preferably a number for a number and a word for a word.
+            // Preferably replace a number with a number and a word with a word.
             let other = dice.one_of(others);
             let kind = kind(&bytes[place.clone()]);
             let mut pieces = (0..8).map(|_| &other[self::place(other, dice)]);
@@ -121,7 +121,7 @@ fn kind(piece: &[u8]) -> [bool; 2] {
     [u8::is_ascii_alphabetic, u8::is_ascii_digit].map(|is| piece.first().is_some_and(is))
 }
 
-/// Overwrites a random place with a piece, as far as it fits. Numbers lie at multiples of their
+/// Overwrites a random place with as much of a piece as fits. Numbers lie at multiples of their
 /// size after the four bytes of the encapsulation, or anywhere.
 fn put(bytes: &mut [u8], piece: &[u8], dice: &mut Dice) {
     let step = match dice.roll(4) {

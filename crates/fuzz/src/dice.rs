@@ -7,7 +7,7 @@ pub struct Dice(u64);
 impl Dice {
     /// The stream for this seed.
     pub fn new(seed: u64) -> Dice {
-        // Seeds that differ in a few bits must give very different states, none of them 0.
+        // Seeds that differ in a few bits must give very different states, all non-zero.
         Dice(
             seed.wrapping_add(1)
                 .wrapping_mul(0x9E37_79B9_7F4A_7C15)
@@ -15,12 +15,12 @@ impl Dice {
         )
     }
 
-    /// A number from 0 to `sides - 1`; 0 without sides.
+    /// A number from 0 to `sides - 1`; 0 if there are no sides.
     pub fn roll(&mut self, sides: usize) -> usize {
         (self.number() >> 33) as usize % sides.max(1)
     }
 
-    /// Any 64 bits.
+    /// A random number of 64 bits.
     pub fn number(&mut self) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -33,7 +33,7 @@ impl Dice {
         &all[self.roll(all.len())]
     }
 
-    /// A random range of at most `most` of `length` elements.
+    /// A random range of at most `most` out of `length` elements.
     pub fn range(&mut self, length: usize, most: usize) -> std::ops::Range<usize> {
         let from = self.roll(length + 1);
         from..(from + 1 + self.roll(most)).min(length).max(from)

@@ -1,6 +1,6 @@
 //! Fuzzes every reader of external data: checks its guarantees on mutated real inputs.
 //!
-//! A [`Target`] is a kind of input. `soak` runs one on stable Rust, with mutations of words,
+//! A [`Target`] is a kind of input. `soak` fuzzes one on stable Rust, with mutations of words,
 //! numbers and bytes. libFuzzer runs the same checks.
 
 mod change;

@@ -20,7 +20,7 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["soak", options @ ..] => soak_all(options),
-        // A child process of `soak`, because an input may crash it.
+        // Run by `soak` in a child process, because an input may crash it.
         ["child", target, seconds, seed, current] => {
             child(target, seconds, seed, Path::new(current))
         }
@@ -111,7 +111,7 @@ fn soak_one(target: &Target, seconds: u64, seed: u64) -> bool {
             file.display()
         );
     }
-    // Without a file, the process did not start.
+    // If the file does not exist, the process did not start.
     drop(std::fs::remove_file(&current));
     status.success()
 }
@@ -138,7 +138,7 @@ fn child(target: &str, seconds: &str, seed: &str, current: &Path) -> ExitCode {
     }
 }
 
-/// Limits memory to 4 GiB, beyond which the process ends.
+/// Limits memory to 4 GiB; if it needs more, the process ends.
 fn limit_memory() {
     use rustix::process::{Resource, Rlimit, setrlimit};
     let most = Some(4 << 30);

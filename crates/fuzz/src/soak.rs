@@ -19,10 +19,10 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 const CPU_MAX: Duration = Duration::from_secs(5);
 /// Wall-clock limit of a check, for busy machines.
 const HUNG: Duration = Duration::from_secs(120);
-/// Size of the field before the input in the file that holds its length: 64 bits, little-endian.
+/// Size of the length field before the input in that file: 64 bits, little-endian.
 const LENGTH: u64 = 8;
 
-/// Checks an input, and the memory and CPU time that the check takes.
+/// Checks an input, including the memory and CPU time that the check takes.
 ///
 /// # Panics
 /// If a guarantee is violated.
@@ -31,7 +31,7 @@ pub fn check(target: &Target, input: &[u8]) {
     let is_within = |(allocated, cpu): (usize, Duration)| {
         allocated <= base + times * input.len() && cpu < CPU_MAX
     };
-    // Data created once and cached does not count against the input: measure again.
+    // Data that is created once and cached does not count: measure again.
     if !is_within(cost(target, input)) {
         let (allocated, cpu) = cost(target, input);
         assert!(
@@ -42,7 +42,7 @@ pub fn check(target: &Target, input: &[u8]) {
     }
 }
 
-/// The bytes allocated by a check in total, and its CPU time.
+/// The total bytes allocated by a check, and its CPU time.
 fn cost(target: &Target, input: &[u8]) -> (usize, Duration) {
     let allocated = ALLOCATOR.stats().bytes_allocated;
     let cpu = cpu_time();
@@ -57,7 +57,7 @@ fn cost(target: &Target, input: &[u8]) -> (usize, Duration) {
 /// while it is checked, so that the input survives a crash.
 ///
 /// # Errors
-/// The failing input.
+/// The input that failed.
 ///
 /// # Panics
 /// If the file cannot be written.
@@ -88,7 +88,7 @@ pub fn soak(target: &Target, time: Duration, seed: u64, current: &Path) -> Resul
     Ok(runs.load(Ordering::Relaxed))
 }
 
-/// The input under check when the process ended.
+/// The input that was being checked when the process ended.
 pub fn left_in(current: &Path) -> Option<Vec<u8>> {
     let bytes = std::fs::read(current).ok()?;
     let (length, rest) = bytes.split_first_chunk()?;
@@ -96,7 +96,7 @@ pub fn left_in(current: &Path) -> Option<Vec<u8>> {
         .map(<[u8]>::to_vec)
 }
 
-/// A counter of runs. The process ends if it does not change for too long.
+/// A counter of runs. The process ends if the counter does not change for too long.
 fn watch_dog() -> &'static AtomicU64 {
     static RUNS: AtomicU64 = AtomicU64::new(0);
     std::thread::spawn(|| {

@@ -1,6 +1,6 @@
 //! Statistics of an update, for every algorithm.
 
-/// Averages over the samples of an update. None where the algorithm has no such value.
+/// Averages over the samples of an update. `None` if the algorithm has no such value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Learnt {
     /// The policy's loss. For TD3, the negative value of its actions according to the critic, in

@@ -1,7 +1,7 @@
 //! Reinforcement learning of policies.
 //!
-//! [`environment`] offers games as environments, alone or in parallel batches. [`train`] runs the
-//! training runs that [`training`] files define, with PPO ([`ppo`]), TD3 or double DQN
+//! [`environment`] offers games as environments, alone or in parallel batches. [`train`] performs
+//! the training runs that [`training`] files define, with PPO ([`ppo`]), TD3 or double DQN
 //! ([`off_policy`]). [`rewards`] files define the rewards. Everything is bit-for-bit reproducible
 //! on any number of threads.
 

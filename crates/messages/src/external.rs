@@ -92,7 +92,7 @@ impl Reported {
         [&ticket.to_le_bytes(), message].concat()
     }
 
-    /// Splits a report into ticket and message; none if it is too short.
+    /// Splits a report into ticket and message; `None` if it is too short.
     pub fn split_ticket(report: &[u8]) -> Option<(u64, &[u8])> {
         let (ticket, message) = report.split_first_chunk()?;
         Some((u64::from_le_bytes(*ticket), message))
@@ -131,7 +131,7 @@ pub enum OperatorCommand {
     GoToErp,
     /// Upload a mission and run it with the boat's own controller.
     Mission(Mission),
-    /// Another mode of the boat's own controller.
+    /// Switch to a different mode of the boat's own controller.
     Mode(BoatMode),
 }
 
@@ -208,7 +208,7 @@ pub enum FleetCommand {
 pub enum GatewayCommand {
     /// A command for one boat.
     Boat {
-        /// The boat's name; another boat's gateway refuses.
+        /// The boat's name; gateways of other boats refuse.
         name: String,
         /// The command.
         command: OperatorCommand,
@@ -245,7 +245,7 @@ pub struct Mission {
     pub throttle_pct: f64,
     /// The emergency recovery point: latitude and longitude, degrees.
     pub erp: [f64; 2],
-    /// The waypoints, each latitude and longitude, degrees.
+    /// The waypoints, as pairs of latitude and longitude, degrees.
     pub waypoints: Vec<[f64; 2]>,
 }
 
@@ -301,7 +301,7 @@ pub struct GatewayStatus {
     /// earlier versions.
     #[serde(default)]
     pub battery_pct: Option<f64>,
-    /// Its age, s; absent in earlier versions.
+    /// Age of voltage and charge, s; absent in earlier versions.
     #[serde(default)]
     pub battery_age_s: Option<f64>,
     /// The last sentence sent.
@@ -312,8 +312,8 @@ pub struct GatewayStatus {
     pub would_send: Option<String>,
     /// All counters, by name.
     pub counts: Vec<(String, u64)>,
-    /// Median and 99th percentile in µs of two latencies: sentence in to topic out, and order in to
-    /// sentence out. Missing until measured.
+    /// Median and 99th percentile of two latencies in µs: from sentence in to topic out, and from
+    /// order in to sentence out. Missing until measured.
     pub latency_us: [Option<[f64; 2]>; 2],
 }
 

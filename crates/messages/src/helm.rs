@@ -1,4 +1,4 @@
-//! Report of a helm on request: its mode, its behaviours and the reasons for its decision.
+//! A helm's report on request: its mode, its behaviours and the reasons for its decision.
 
 use primitives::id::VehicleId;
 use primitives::time::SimTime;
@@ -16,10 +16,10 @@ pub struct HelmReport {
     pub program: String,
     /// The mode with its parent modes: `defending:loitering`.
     pub mode: String,
-    /// Chosen heading, compass degrees; none if the boat holds. Heading plus drift gives the
+    /// Chosen heading, compass degrees; `None` if the boat holds. Heading plus drift gives the
     /// course.
     pub course_deg: Option<f64>,
-    /// Chosen speed through the water, m/s; none if the boat holds.
+    /// Chosen speed through the water, m/s; `None` if the boat holds.
     pub speed_m_s: Option<f64>,
     /// Estimated offset of the boat's heading from the ordered heading, degrees clockwise. The helm
     /// subtracts it from the chosen heading. Recordings of earlier versions have neither this nor
@@ -63,8 +63,8 @@ pub struct DriftReport {
 }
 
 impl HelmReport {
-    /// The weighted sum of these functions by course and speed; functions without utilities add
-    /// nothing.
+    /// The weighted sum of these functions by course and speed; functions without utilities are
+    /// ignored.
     pub fn sum<'a>(&self, functions: impl Iterator<Item = &'a FunctionReport>) -> Vec<f64> {
         let mut total = vec![0.0; self.courses * self.speeds];
         for function in functions {
@@ -111,14 +111,14 @@ pub struct PolicyReport {
     pub behaviour: String,
     /// Its model file.
     pub model: String,
-    /// The proposed course, compass degrees; none without a proposal.
+    /// The proposed course, compass degrees; `None` without a proposal.
     pub course_deg: Option<f64>,
     /// The proposed speed, m/s.
     pub speed_m_s: Option<f64>,
     /// The chosen option, if it chooses among options.
     #[serde(default)]
     pub option: Option<String>,
-    /// Why it proposes nothing, if so.
+    /// Why it makes no proposal, if so.
     pub fault: Option<String>,
     /// Probability of each discrete action; empty for continuous actions.
     pub probabilities: Vec<f32>,
@@ -183,7 +183,7 @@ pub struct FunctionReport {
     pub contact: Option<VehicleId>,
     /// Its weight.
     pub weight: f64,
-    /// Its utility at the decision, 0 to 100; none until evaluated.
+    /// Its utility at the decision, 0 to 100; `None` until evaluated.
     pub utility: Option<f32>,
     /// Its utilities, one row of speeds per course; empty unless requested.
     pub utilities: Vec<f32>,

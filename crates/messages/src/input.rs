@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub enum Input {
     /// The teams received their pictures: boats observed and reported.
     Pictured,
-    /// A vehicle was sent an order.
+    /// A vehicle received an order.
     Ordered {
         /// The vehicle.
         vehicle: VehicleId,
@@ -41,7 +41,7 @@ pub enum Input {
     },
     /// The E-stop for all boats was set or released.
     EStopped(bool),
-    /// Holding of all boats was set or released.
+    /// A hold of all boats was set or released.
     Halted(bool),
     /// The game advanced to the next decision.
     Played,
@@ -80,10 +80,10 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// The version without the pictures that orders answer.
+    /// The last version that did not record the pictures answered by orders.
     const WITHOUT_GIVEN_AT: u8 = 1;
 
-    /// Each input; none where it is unknown or of another game.
+    /// All inputs; `None` for those that are unknown or belong to a different game.
     pub fn of(&self, scenario: &Scenario) -> impl Iterator<Item = Option<Input>> {
         let is_old = self.stamp.version <= Inputs::WITHOUT_GIVEN_AT;
         self.inputs.iter().map(move |record| {
@@ -106,7 +106,7 @@ pub struct InputRecord {
     pub kind: u8,
     /// Vehicle index, or -1.
     pub vehicle: i32,
-    /// For a report the time of the fix, for an order that of the answered picture, ns.
+    /// Time of a report's fix or of the picture that an order answers, ns.
     pub at_ns: SimTime,
     /// The arguments of the kind.
     pub numbers: Vec<f64>,

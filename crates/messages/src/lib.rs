@@ -1,6 +1,6 @@
-//! Wire messages of every tick: one struct per topic, matching `msg/*.msg`.
+//! Per-tick wire messages: one struct per topic, matching `msg/*.msg`.
 //!
-//! The structs use only types of ROS 2 (fixed-width numbers, lists, nested messages): tools with
+//! The structs use only ROS 2 types (fixed-width numbers, lists, nested messages), so tools with
 //! the `.msg` files can decode our bytes. `-1` means "none". The low-rate control plane
 //! ([`JoinRequest`], [`JoinReply`], [`Control`]) is JSON.
 
@@ -218,7 +218,7 @@ pub struct Word {
     pub vehicle: VehicleId,
     /// The variable: a hash of its name and its possible values.
     pub key: u64,
-    /// Its value: booleans are 0 and 1, texts are indices from 0.
+    /// Its value: booleans are 0 and 1, strings are indices from 0.
     pub value: f64,
 }
 
@@ -278,10 +278,10 @@ pub enum JoinReply {
         ticket: u64,
         /// The vehicles, in the requested order.
         vehicles: Vec<VehicleId>,
-        /// Game time of joining. Earlier messages are not for this node.
+        /// Game time of joining. Earlier messages are not meant for this node.
         now_ns: SimTime,
     },
-    /// Another node has the vehicle. A later retry may succeed.
+    /// The vehicle belongs to a different node. A later retry may succeed.
     Busy {
         /// The vehicle.
         vehicle: String,
@@ -305,13 +305,13 @@ pub enum Control {
     Resume,
     /// In a paused game, plays one decision.
     Step,
-    /// Limits the speed to this many simulated seconds per second; none removes the limit. A
+    /// Limits the speed to this many simulated seconds per second; `None` removes the limit. A
     /// lockstep game plays no faster than that, a clocked game exactly that fast. A game with real
     /// boats keeps its pace.
     Speed(Option<f64>),
     /// Makes all boats hold while the game continues.
     Halt,
-    /// Ends the hold.
+    /// Ends `Halt`.
     GoOn,
     /// Stops all boats, real and simulated, until released.
     EStop,
@@ -323,7 +323,7 @@ pub enum Control {
 pub type ControlReply = Result<(), String>;
 
 impl Control {
-    /// Whether it stops boats or pauses the game: such commands need no token.
+    /// Whether the command stops boats or pauses the game: such commands need no token.
     pub fn stops(self) -> bool {
         matches!(self, Control::EStop | Control::Halt)
     }

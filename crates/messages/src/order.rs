@@ -1,4 +1,4 @@
-//! Orders: what a mind requests from its boat.
+//! Orders: requests of a mind to its boat.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -23,10 +23,10 @@ pub enum Order {
         /// Starboard thruster.
         starboard: f64,
     },
-    /// The front seat's controllers turn continuously: at every tick, the ordered heading is this
-    /// far from the current one.
+    /// The front seat's controllers turn continuously: at every tick, the ordered heading differs
+    /// from the current one by this angle.
     Turn {
-        /// Change of heading, radians clockwise, -pi to pi: half a turn to either side is two
+        /// Change of heading, radians clockwise, -pi to pi: half-turns to port and to starboard are
         /// different orders.
         by_rad: f64,
         /// Desired speed ahead over the ground, m/s; at least 0.
@@ -49,7 +49,7 @@ impl Order {
     /// Checks that every number is in range.
     ///
     /// # Errors
-    /// [`BadOrder`] names the defect.
+    /// [`BadOrder`] states the defect.
     pub fn check(self) -> Result<Order, BadOrder> {
         let (a, b, range_ok) = match self {
             Order::Hold => return Ok(self),

@@ -1,6 +1,6 @@
 //! The picture of a team: its own boats, its contacts, the flags, the score.
 //!
-//! An agent decides from the picture alone. It is the same at sea and in simulation.
+//! An agent bases its decisions on the picture alone, which is the same at sea and in simulation.
 
 use primitives::frame::{Body, Ned, Pose, ned_from_body};
 use primitives::id::{FlagId, TeamId, VehicleId};
@@ -96,7 +96,7 @@ pub struct Imu {
     pub ahead_m_s2: f64,
     /// Specific force to starboard, m/s².
     pub starboard_m_s2: f64,
-    /// Specific force down, m/s²: minus gravity at rest.
+    /// Specific force down, m/s²: the negative of gravity at rest.
     pub down_m_s2: f64,
 }
 
@@ -123,7 +123,7 @@ pub struct OwnBoat {
     pub tag_ready_ns: SimTime,
 }
 
-/// A boat of another team, as known.
+/// A boat of an opposing team, as known to this one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Its vehicle index.
@@ -220,7 +220,7 @@ impl Picture {
         (before - count(self)) as u64
     }
 
-    /// The team's own boat `vehicle`; `None` if it belongs to another team.
+    /// The team's own boat `vehicle`; `None` if it belongs to a different team.
     pub fn own(&self, vehicle: VehicleId) -> Option<&OwnBoat> {
         self.own
             .binary_search_by_key(&vehicle, |boat| boat.vehicle)
@@ -230,7 +230,7 @@ impl Picture {
 }
 
 impl OwnBoat {
-    /// A boat in play of which only its navigation is known.
+    /// A boat in play; only its navigation is known.
     pub fn new(vehicle: VehicleId, nav: Nav) -> OwnBoat {
         OwnBoat {
             vehicle,
@@ -251,7 +251,7 @@ impl OwnBoat {
     }
 }
 
-/// Encodes an optional flag as in the messages: -1 is none.
+/// Encodes an optional flag as in the messages: -1 for `None`.
 pub fn number_of_flag(flag: Option<FlagId>) -> i16 {
     flag.map_or(-1, |flag| i16::from(flag.0))
 }

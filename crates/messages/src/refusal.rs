@@ -1,5 +1,5 @@
-//! Why messages of other programs were refused, counted by reason: the same for agents, gateways
-//! and the sim.
+//! Why messages from other programs were refused, counted by reason: the same reasons for agents,
+//! gateways and the sim.
 
 use crate::Message;
 use primitives::codec::{self, DecodeError};
@@ -15,7 +15,7 @@ use std::ops::Add;
 pub enum Refusal {
     /// Bytes that do not decode as the message.
     Garbage,
-    /// A message from another version.
+    /// A message from a different version.
     Version,
     /// A ticket that is unknown or has expired.
     Ticket,
@@ -27,22 +27,22 @@ pub enum Refusal {
     BadNumber,
     /// An agent gave no order for one of its vehicles. The boat holds.
     Missing,
-    /// Operator requests that do not apply to the game: another speed with real boats, a step of a
-    /// game that is not paused.
+    /// Operator requests that do not apply to the game: a change of speed with real boats, or a
+    /// step of a game that is not paused.
     OutOfPlace,
-    /// Messages faster than they could be read.
+    /// Messages that arrived faster than they could be read.
     Flood,
-    /// More team messages of a boat than it has variables.
+    /// More team messages from a boat than it has variables.
     Surplus,
     /// A team message that did not arrive in time, from a boat that had sent one at the previous
     /// decision.
     TeamMessageMissing,
-    /// A decision without a timely proposal from a policy.
+    /// A decision without a proposal from a policy in time.
     ProposalMissing,
 }
 
 impl Refusal {
-    /// All reasons, with their user-visible texts.
+    /// All reasons, with their user-visible descriptions.
     const ALL: [(Refusal, &str); 12] = [
         (Refusal::Garbage, "malformed"),
         (Refusal::Version, "from a different version"),
@@ -68,12 +68,12 @@ impl Refusal {
 pub struct Refusals([u64; Refusal::ALL.len()]);
 
 impl Refusals {
-    /// Counts one.
+    /// Counts one message.
     pub fn count(&mut self, refusal: Refusal) {
         self.add(refusal, 1);
     }
 
-    /// Counts several.
+    /// Counts several messages.
     pub fn add(&mut self, refusal: Refusal, count: u64) {
         self.0[refusal as usize] += count;
     }

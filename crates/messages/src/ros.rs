@@ -1,6 +1,6 @@
 //! The `.msg` definitions, with which tools decode our messages.
 
-/// Name and text of every definition, by name.
+/// Name and content of every definition, by name.
 pub const DEFINITIONS: [(&str, &str); 21] = [
     ("Contact", include_str!("../msg/Contact.msg")),
     ("EventRecord", include_str!("../msg/EventRecord.msg")),
@@ -35,8 +35,8 @@ fn definition(name: &str) -> Option<&'static str> {
         .map(|(_, text)| *text)
 }
 
-/// A definition with all nested definitions, in the form of ROS 2 recordings; none for a name that
-/// is not ours. `schema` is that of a [`Message`](crate::Message), as in `squall_msgs/msg/Frame`.
+/// A definition with all nested definitions, in the form of ROS 2 recordings; `None` for an unknown
+/// name. `schema` is that of a [`Message`](crate::Message), as in `squall_msgs/msg/Frame`.
 pub fn full_definition(schema: &str) -> Option<String> {
     let mut names = vec![schema.rsplit('/').next()?];
     let mut text = definition(names[0])?.to_owned();

@@ -1,4 +1,5 @@
-//! The state of a game's run: what depends on the machine and its operators, not on the game.
+//! The state of a game's run: everything that depends on the machine and its operators, not on the
+//! game.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,9 +10,9 @@ pub struct RunState {
     pub phase: Phase,
     /// Simulated time, s.
     pub now_s: f64,
-    /// Its initial pace: `lockstep`, `realtime` or a factor such as `4x`.
+    /// The pace at the start: `lockstep`, `realtime` or a factor such as `4x`.
     pub pace: String,
-    /// Target speed, or upper limit in lockstep, in simulated seconds per second; none is
+    /// Target speed, or upper limit in lockstep, in simulated seconds per second; `None` is
     /// unlimited.
     pub speed: Option<f64>,
     /// Recent speed, simulated seconds per second.
@@ -42,7 +43,7 @@ pub enum Phase {
     Playing,
     /// The game is paused.
     Paused,
-    /// It has ended.
+    /// The game has ended.
     Over,
 }
 

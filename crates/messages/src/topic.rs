@@ -1,6 +1,6 @@
 //! The key expressions of a game; no other module contains any.
 //!
-//! All keys begin with `squall/<game>/`: games on one network do not interfere.
+//! All keys begin with `squall/<game>/`, so that games on one network do not interfere.
 
 use crate::Role;
 use crate::external::Reported;
@@ -15,7 +15,7 @@ impl GameName {
     /// Validates the name as part of a key.
     ///
     /// # Errors
-    /// States which characters are allowed.
+    /// Lists the characters that are allowed.
     pub fn new(name: &str) -> Result<GameName, String> {
         let allowed =
             |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
@@ -120,7 +120,7 @@ pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) 
     )
 }
 
-/// Gateway reports for other nodes, to the sim alone (publish): see [`Reported`].
+/// Gateway reports for other nodes, sent to the sim only (publish): see [`Reported`].
 pub fn report(game: &GameName, what: Reported, vehicle: &str) -> String {
     format!("squall/{}/report/{what}/{vehicle}", game.0)
 }

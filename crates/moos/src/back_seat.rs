@@ -1,4 +1,4 @@
-//! The orders of a boat's MOOS applications: their last requests, as long as these are recent.
+//! The orders of a boat's MOOS applications: their last requests, as long as they are recent.
 
 use crate::wire::Msg;
 use messages::Order;
@@ -16,12 +16,12 @@ pub(crate) const READS: [&str; 10] = [
     "DESIRED_THRUST_R",
     "DEPLOY",
     "MOOS_MANUAL_OVERRIDE",
-    // As older applications spell it.
+    // The spelling of older applications.
     "MOOS_MANUAL_OVERIDE",
     "IVPHELM_ALLSTOP",
 ];
 
-/// Variables that show that a boat has its helm or its controller.
+/// Variables whose presence shows that a boat has a helm or a controller.
 pub(crate) const HELM: [&str; 7] = [
     "IVPHELM_STATE",
     READS[0],
@@ -50,7 +50,7 @@ pub(crate) struct BackSeat {
     is_overridden: bool,
     /// Why the helm has stopped the boat, if so.
     all_stop: Option<String>,
-    /// Requests without meaning.
+    /// Meaningless requests.
     pub(crate) refusals: Refusals,
 }
 
@@ -87,9 +87,9 @@ impl BackSeat {
         }
     }
 
-    /// The order now: thrust and rudder before heading and speed, because a controller that
-    /// converts the latter to the former runs after the helm. Without a complete pair of requests
-    /// younger than `ttl_s`, the boat holds.
+    /// The current order: thrust and rudder take precedence over heading and speed, because a
+    /// controller that converts the latter to the former runs after the helm. Without a complete
+    /// pair of requests younger than `ttl_s`, the boat holds.
     pub(crate) fn order(&mut self, now: SimTime, ttl_s: f64) -> Order {
         if self.is_undeployed || self.is_overridden || self.all_stop.is_some() {
             return Order::Hold;

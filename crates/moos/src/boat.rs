@@ -1,5 +1,5 @@
-//! A boat as a MOOS community: its mind publishes each picture as variables, and orders what the
-//! community's applications request.
+//! A boat as a MOOS community: its mind publishes each picture as variables, and orders as
+//! requested by the community's applications.
 
 use crate::back_seat::{self, BackSeat};
 use crate::clock::MoosClock;
@@ -30,12 +30,12 @@ pub fn reads() -> BTreeSet<String> {
         .collect()
 }
 
-/// Drawings that wait for the shoreside.
+/// Maximum number of drawings waiting for the shoreside.
 const DRAWINGS_MAX: usize = 256;
-/// A helm that was silent for this long has been restarted, s.
+/// Silence after which a helm counts as restarted, s.
 const HELM_SILENCE_S: f64 = 3.0;
 
-/// The values that a community starts with: a game begins without an operator who presses a button.
+/// The initial values of a community: a game begins without an operator pressing a button.
 const START: [(&str, bool); 5] = [
     ("DEPLOY", true),
     ("RETURN", false),
@@ -44,8 +44,8 @@ const START: [(&str, bool); 5] = [
     ("MOOS_MANUAL_OVERIDE", false),
 ];
 
-/// The mind of a boat whose decisions MOOS applications make. It depends on their clocks, so it is
-/// for games paced by a clock.
+/// The mind of a boat whose decisions are made by MOOS applications. It depends on their clocks, so
+/// it is only for games paced by a clock.
 pub struct BoatMind {
     scenario: Arc<Scenario>,
     frame: LocalFrame,
@@ -54,7 +54,7 @@ pub struct BoatMind {
     moos: MoosClock,
     back_seat: BackSeat,
     requests: Requests,
-    /// The time of the last sighting of each contact that was published.
+    /// The time of the last published sighting of each contact.
     seen: BTreeMap<VehicleId, SimTime>,
     has_begun: bool,
     /// When the helm last reported its state.
@@ -90,7 +90,7 @@ impl BoatMind {
         let now = picture.stamp.valid_ns;
         if !self.has_begun && community.is_reachable() {
             self.has_begun = true;
-            // The mission's own initial values, such as `DEPLOY = false`, no longer hold.
+            // The mission's own initial values, such as `DEPLOY = false`, no longer apply.
             drop(community.take_heard());
             for (key, value) in START {
                 community.publish(key, flag_of(value));
@@ -105,7 +105,7 @@ impl BoatMind {
             if msg.key == "IVPHELM_STATE" {
                 let before = self.helm_at.replace(now);
                 if before.is_none_or(|before| (now - before).as_s() > HELM_SILENCE_S) {
-                    // A mission's initial values of game variables are not the game's.
+                    // A mission's initial values of game variables do not come from the game.
                     community.forget_all();
                 }
             } else if DRAWINGS.contains(&msg.key.as_str()) {
@@ -137,7 +137,7 @@ impl BoatMind {
             ("NAV_LAT", at.lat_deg),
             ("NAV_LONG", at.lon_deg),
             ("NAV_HEADING", heading_deg),
-            // Counter-clockwise, rad, as simulators of MOOS publish it.
+            // Counter-clockwise, rad, as published by simulators of MOOS.
             ("NAV_YAW", -nav.psi_rad),
             ("NAV_SPEED", nav.speed_m_s()),
             ("NAV_HEADING_OVER_GROUND", compass_deg_from_rad(course_rad)),
@@ -159,7 +159,7 @@ impl BoatMind {
         );
     }
 
-    /// Reports the mates, and each new sighting of other boats, with its time.
+    /// Reports the teammates, and each new sighting of other boats with its time.
     fn publish_others(&mut self, community: &mut Community, picture: &Picture) {
         let now_s = self.moos.now_s();
         for mate in picture
@@ -215,7 +215,7 @@ impl BoatMind {
             .own_flags(team)
             .any(|(_, home)| home.distance(at) < scenario.rules.untag_radius_m);
         if is_home && !std::mem::replace(&mut self.was_home, is_home) {
-            // Missions set `TAGGED` themselves to send a boat home: that makes it true again.
+            // Missions set `TAGGED` themselves to send a boat home; this makes it true again.
             ["TAGGED", "HAS_FLAG"]
                 .iter()
                 .for_each(|key| community.forget(key));
@@ -269,7 +269,7 @@ impl Mind for BoatMind {
     }
 }
 
-/// The end of the game, for a helm that still runs.
+/// Publishes the end of the game, for a helm that is still running.
 pub(crate) fn publish_end(community: &mut Community) {
     community.publish("AQUATICUS_GAME", Value::Text("stop".to_owned()));
     community.publish("DEPLOY", flag_of(false));
@@ -284,7 +284,7 @@ pub(crate) fn mode_of(is_tagged: bool, carrying: i16) -> &'static str {
     }
 }
 
-/// A contact's motion; its velocity is treated as ahead.
+/// A contact's motion; its whole velocity is taken as ahead.
 fn nav_of(contact: &Contact) -> Nav {
     Nav {
         north_m: contact.north_m,
@@ -307,7 +307,7 @@ mod tests {
 
     const MOOS: MoosClock = MoosClock { warp: 1.0 };
 
-    /// A picture of the first boat, which is tagged, and an opponent in its zone, seen half a
+    /// A picture of the first boat, which is tagged, and an opponent in its zone, sighted half a
     /// second before.
     fn picture(scenario: &Scenario, s: f64) -> Picture {
         let stamp = Stamp {

@@ -22,12 +22,12 @@ use thiserror::Error;
 
 /// Interval of notes about dropped messages.
 const REPORT: Duration = Duration::from_secs(1);
-/// Applications without a helm get this long before the boats join.
+/// Time that applications without a helm have to connect before the boats join.
 const HELM_MAX: Duration = Duration::from_secs(5);
-/// How long applications can read the end of the game before their database closes.
+/// Time for applications to read the end of the game before their database closes.
 const LINGER: Duration = Duration::from_millis(500);
 
-/// What to connect.
+/// The settings of a bridge.
 pub struct Settings {
     /// The game to join. `None`: the only one available.
     pub game: Option<GameName>,
@@ -35,25 +35,26 @@ pub struct Settings {
     pub place: Place,
     /// Maximum time to search for the sim and to wait for free boats.
     pub wait: Duration,
-    /// After this long without a picture, the sim is treated as lost.
+    /// Time without a picture after which the sim counts as lost.
     pub silence: Duration,
     /// Set from outside to leave the game.
     pub stop: Arc<AtomicBool>,
-    /// Boats by name, with the addresses of their databases; without one, the next port.
+    /// Boats by name, with the addresses of their databases; without an address, the next port is
+    /// used.
     pub boats: Vec<(String, Option<Address>)>,
-    /// A team, all of whose boats are connected.
+    /// A team whose boats are all connected.
     pub team: Option<String>,
     /// The first port of boats without an address.
     pub first_port: u16,
     /// The shoreside's database.
     pub shore: Option<Address>,
-    /// Addresses of pShare that get what the shoreside publishes.
+    /// Addresses of pShare instances that receive the shoreside's publications.
     pub share_to: Vec<SocketAddr>,
-    /// Where commands from pShare arrive.
+    /// The address at which commands from pShare arrive.
     pub share_listen: Option<SocketAddr>,
 }
 
-/// What the bridge reports.
+/// Reports of the bridge.
 pub enum News<'a> {
     /// No game found yet, or a boat is not free.
     Looking(&'a str),
@@ -71,7 +72,7 @@ pub enum BridgeError {
     /// There is no game.
     #[error(transparent)]
     NotFound(#[from] NotFound),
-    /// The game or the arguments do not allow it.
+    /// The game or the arguments do not allow a bridge.
     #[error("{0}")]
     Impossible(String),
     /// The boats could not join, or lost the game.
@@ -88,7 +89,7 @@ impl From<String> for BridgeError {
     }
 }
 
-/// Where reports go.
+/// Receives reports.
 pub type Tell<'a> = &'a (dyn Fn(News<'_>) + Sync);
 
 /// A game and the communities connected to it.
@@ -196,8 +197,8 @@ impl Bridge<'_> {
         played
     }
 
-    /// Waits until every boat has a helm, or at least some application: with its last agent, a game
-    /// begins.
+    /// Waits until every boat has a helm, or at least some application, because a game begins once
+    /// its last agent has joined.
     fn await_helms(&self) -> Result<(), BridgeError> {
         let patience = Patience::of_player(self.settings.silence);
         let sim = SimWatch::open(&self.bus, &self.game, patience)?;
@@ -308,7 +309,7 @@ impl Bridge<'_> {
         }))
     }
 
-    /// Reports what was dropped, once a second at most, and a pace that MOOS does not follow.
+    /// Reports drops, at most once a second, and a pace that MOOS does not follow.
     fn report(&self, speed: &Watched<Option<f64>>, is_ended: &dyn Fn() -> bool) {
         let mut last = vec![String::new(); self.boats.len() + 1];
         let mut told_speed = self.moos.warp;

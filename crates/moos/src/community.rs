@@ -1,4 +1,5 @@
-//! A MOOS community as the bridge sees it: where it publishes, and what it reads.
+//! A MOOS community from the bridge's point of view: where it publishes, and which variables it
+//! reads.
 
 use crate::back_seat::HELM;
 use crate::clock::MoosClock;
@@ -81,7 +82,7 @@ pub struct Community {
 pub enum Value {
     /// A number.
     Number(f64),
-    /// Text.
+    /// A string.
     Text(String),
 }
 
@@ -89,7 +90,7 @@ impl Community {
     /// Opens the database, or the connection to it.
     ///
     /// # Errors
-    /// What is wrong with the address.
+    /// If the address is invalid.
     pub fn open(
         name: &str,
         address: &Address,
@@ -159,13 +160,13 @@ impl Community {
         Some(self.publish_at(key, value, self.moos.now_s()))
     }
 
-    /// Whether `text` differs from the last one given for `key`, which need not be a variable.
+    /// Whether `text` differs from the last one passed for `key`, which need not be a variable.
     pub(crate) fn is_change(&mut self, key: &str, text: &str) -> bool {
         let value = Value::Text(text.to_owned());
         self.published.insert(key.to_owned(), value.clone()) != Some(value)
     }
 
-    /// Publishes a person's command from the shoreside, for applications and for the bridge.
+    /// Publishes a person's command from the shoreside, for both applications and the bridge.
     pub(crate) fn command(&mut self, msg: Msg) {
         let msg = Msg {
             kind: Kind::NOTIFY,
@@ -223,8 +224,8 @@ impl Community {
         heard
     }
 
-    /// Publishes the state of a served database, once a second. Returns notes for the person who
-    /// runs the bridge since the last call.
+    /// Publishes the state of a served database once a second. Returns the notes since the last
+    /// call for the person who runs the bridge.
     pub fn tend(&mut self) -> Vec<String> {
         if let Link::Served(server) = &self.link {
             self.notes.extend(server.visit(|database, now_s| {
@@ -235,7 +236,7 @@ impl Community {
         std::mem::take(&mut self.notes)
     }
 
-    /// What was dropped so far.
+    /// Counts of drops so far.
     pub fn dropped(&self) -> Dropped {
         let dropped = match &self.link {
             Link::Served(server) => server.visit(|database, _| database.dropped),

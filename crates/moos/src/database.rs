@@ -1,9 +1,9 @@
-//! The state of a MOOSDB: variables, clients, subscriptions and their mail, without sockets and
+//! The state of a MOOSDB: variables, clients, subscriptions and their mail, without sockets or
 //! clock.
 //!
 //! Like MOOSDB, it fixes a variable's type with the first value, delivers the last value on
-//! registration, and refuses a second client of the same name. Unlike MOOSDB, everything that
-//! clients can fill has a limit, and whatever it drops is counted.
+//! registration, and refuses a second client of the same name. Unlike in MOOSDB, everything that
+//! clients can fill has a limit, and all drops are counted.
 
 use crate::mail::Mail;
 use crate::pattern::{matches, patterns};
@@ -18,7 +18,7 @@ pub const CLIENTS_MAX: usize = 64;
 const NAME_MAX: usize = 128;
 /// Maximum number of variables.
 const VARIABLES_MAX: usize = 8192;
-/// Maximum number of subscriptions of a client, of each kind.
+/// Maximum number of subscriptions of a client, for each kind.
 const SUBSCRIPTIONS_MAX: usize = 8192;
 /// Maximum length of all values, bytes.
 const STORED_MAX: usize = 64 << 20;
@@ -26,13 +26,13 @@ const STORED_MAX: usize = 64 << 20;
 pub const BRIDGE: &str = "squall";
 /// Interval of the database's own variables, s.
 const STATUS_S: f64 = 1.0;
-/// Clocks that differ by more than this are reported, s.
+/// Clock difference above which a client is reported, s.
 const SKEW_MAX_S: f64 = 60.0;
 
-/// What was dropped, by reason.
+/// Counts of drops, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
-    /// Values of another type than the variable has.
+    /// Values that are not of the variable's type.
     pub wrong_type: u64,
     /// Values, variables or subscriptions beyond a limit.
     pub over_limit: u64,
@@ -100,7 +100,7 @@ struct Client {
     mail: Arc<Watched<Mail>>,
     subscriptions: BTreeMap<String, Subscription>,
     wildcards: Vec<Wildcard>,
-    /// The subscriptions by pattern of variables received so far.
+    /// The subscriptions, among these patterns, that apply to variables received so far.
     matched: BTreeMap<String, Subscription>,
 }
 
@@ -119,7 +119,7 @@ pub struct Database {
     skewed: BTreeSet<String>,
     opened_s: f64,
     status_s: f64,
-    /// What was dropped so far.
+    /// Counts of drops so far.
     pub dropped: Dropped,
 }
 
@@ -141,7 +141,7 @@ impl Database {
         }
     }
 
-    /// Admits a client whose handshake said `hello`, and returns the welcome and its mail box.
+    /// Admits a client with the handshake `hello`, and returns the welcome and its mailbox.
     ///
     /// # Errors
     /// The reason for a refusal.
@@ -163,7 +163,8 @@ impl Database {
             self.dropped.refused += 1;
             return Err(reason);
         }
-        // An upper bound of the clocks' difference, since it includes the packet's transit time.
+        // An upper bound of the difference of the clocks, since it includes the packet's transit
+        // time.
         let skew_s = if hello.time_s.is_finite() {
             now_s - hello.time_s
         } else {
@@ -445,7 +446,7 @@ impl Database {
 }
 
 impl Client {
-    /// The subscription by pattern under which this client gets a variable.
+    /// The subscription by pattern through which this client receives a variable.
     fn matching(&mut self, msg: &Msg) -> Option<&mut Subscription> {
         if self.wildcards.is_empty() {
             return None;

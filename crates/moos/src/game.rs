@@ -1,4 +1,4 @@
-//! What both a boat's community and the shoreside publish about the game: flags, zones, scores.
+//! Game variables that both a boat's community and the shoreside publish: flags, zones, scores.
 
 use crate::community::{Community, Value};
 use analysis::alog;
@@ -8,7 +8,7 @@ use primitives::math::decimal;
 use primitives::{Ned, TeamId, VehicleId};
 use scenario::Scenario;
 
-/// Colours of the drawing programs; other team names are drawn in the last one.
+/// Colours known to the drawing programs; teams with other names are drawn in the last one.
 const COLOURS: [&str; 6] = ["red", "blue", "green", "orange", "yellow", "white"];
 
 /// A node report, with latitude and longitude.
@@ -28,7 +28,7 @@ pub(crate) fn node_report(
     ))
 }
 
-/// `true` or `false`, as missions compare it.
+/// `true` or `false`, in the form that missions compare.
 pub(crate) fn flag_of(is_so: bool) -> Value {
     Value::Text(is_so.to_string())
 }
@@ -41,7 +41,7 @@ pub(crate) fn colour(scenario: &Scenario, team: TeamId) -> &str {
         .map_or("white", |_| name)
 }
 
-/// A flag as a marker: where it is, or with its carrier.
+/// A flag as a marker: at its position, or with its carrier.
 pub(crate) fn marker(scenario: &Scenario, i: usize, at: Ned) -> String {
     let team = scenario.field.flags[i].team;
     format!(
@@ -54,7 +54,7 @@ pub(crate) fn marker(scenario: &Scenario, i: usize, at: Ned) -> String {
     )
 }
 
-/// The label of a flag is the name of its team; further flags of a team have a number.
+/// The label of a flag: the name of its team, with a number for further flags of a team.
 pub(crate) fn flag_label(scenario: &Scenario, i: usize) -> String {
     let flags = &scenario.field.flags;
     let team = &scenario.teams[flags[i].team.index()].name;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Maximum length of unread mail of a client, bytes.
 pub(crate) const MAIL_MAX: usize = 8 << 20;
 
-/// Unread mail of a client: encoded messages, which all recipients share.
+/// Unread mail of a client: encoded messages, shared by all recipients.
 #[derive(Default)]
 pub struct Mail {
     /// The messages, oldest first.
@@ -20,12 +20,12 @@ pub struct Mail {
 }
 
 impl Mail {
-    /// Adds a message; returns how many old ones it displaced.
+    /// Adds a message; returns how many old ones were dropped for it.
     pub(crate) fn push(&mut self, message: &Arc<[u8]>) -> u64 {
         self.bytes += message.len();
         self.messages.push_back(Arc::clone(message));
         let mut displaced = 0;
-        // Half of it is dropped, as MOOS clients do with unsent mail, so that this rarely happens.
+        // Drops half of the mail, as MOOS clients do with unsent mail, so that this rarely happens.
         if self.bytes > MAIL_MAX {
             while self.bytes > MAIL_MAX / 2 {
                 let Some(old) = self.messages.pop_front() else {
@@ -38,7 +38,7 @@ impl Mail {
         displaced
     }
 
-    /// Unread mail as one packet that begins with `first`; none without any message.
+    /// Unread mail as one packet that begins with `first`; `None` without any message.
     pub fn take_packet(&mut self, first: Option<&Msg>) -> Option<Vec<u8>> {
         let mut encoded = Vec::new();
         first

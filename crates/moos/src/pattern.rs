@@ -2,8 +2,8 @@
 
 use crate::wire::Msg;
 
-/// The patterns of a subscription for sources and variables, and its interval, as MOOS clients
-/// (with commas) and `pymoos2` (with blanks) write them.
+/// The patterns of a subscription for sources and variables, and its interval, as written by MOOS
+/// clients (with commas) and `pymoos2` (with blanks).
 pub(crate) fn patterns(msg: &Msg) -> [String; 3] {
     let text = msg.as_text().unwrap_or_default();
     let value = |name: &str| {
@@ -23,11 +23,11 @@ pub(crate) fn patterns(msg: &Msg) -> [String; 3] {
     ]
 }
 
-/// Whether a pattern matches: `*` any characters, `?` one.
+/// Whether a pattern matches: `*` stands for any characters, `?` for one.
 pub(crate) fn matches(pattern: &str, text: &str) -> bool {
     let (pattern, text) = (pattern.as_bytes(), text.as_bytes());
     let (mut p, mut t) = (0, 0);
-    // Where to resume after the last star: with one more character under it.
+    // Where to resume after the last star, which then covers one more character.
     let mut resume = None;
     while t < text.len() {
         match pattern.get(p) {

@@ -15,7 +15,7 @@ use std::time::Duration;
 
 /// The name of the bridge among the clients.
 const NAME: &str = "squall_bridge";
-/// Maximum time for connecting, and for writing.
+/// Maximum time to connect, and to write.
 const CONNECT_MAX: Duration = Duration::from_secs(2);
 /// Pause between two attempts.
 const RETRY: Duration = Duration::from_millis(500);
@@ -95,7 +95,7 @@ impl Remote {
         })
     }
 
-    /// Whether one of these variables was heard, and whether the database is connected.
+    /// Whether one of these variables was received, and whether the database is connected.
     pub(crate) fn presence(&self, names: &[&str]) -> (bool, bool) {
         self.state.visit(|state| {
             let has = |name: &&str| state.heard.contains_key(*name);
@@ -103,7 +103,7 @@ impl Remote {
         })
     }
 
-    /// What was dropped so far.
+    /// Counts of drops so far.
     pub(crate) fn dropped(&self) -> Dropped {
         self.state.visit(|state| state.dropped)
     }
@@ -237,7 +237,7 @@ impl Link {
                 timed = if is_due { clock::now() } else { timed };
                 let packet = mail.visit(|mail| mail.take_packet(timing.as_ref()));
                 if packet.is_some_and(|packet| stream.write_all(&packet).is_err()) {
-                    // Ends the reading thread too.
+                    // This ends the reading thread too.
                     drop(stream.shutdown(Shutdown::Both));
                     return;
                 }
@@ -247,7 +247,7 @@ impl Link {
 }
 
 impl State {
-    /// Keeps values of other applications.
+    /// Stores values of other applications.
     fn keep(&mut self, messages: Vec<Msg>, reads: &BTreeSet<String>) {
         for msg in messages
             .into_iter()
@@ -282,7 +282,7 @@ mod tests {
         .unwrap()
     }
 
-    /// The keys that reach the client and the server until each has one.
+    /// The keys received by the client and the server, once each has one.
     fn exchange(remote: &Remote, server: &Server) -> [String; 2] {
         let mut heard = [String::new(), String::new()];
         let start = clock::now();

@@ -1,5 +1,6 @@
-//! Answers to requests for tags and grabs. The referee alone decides; it judges positions and needs
-//! no request. The reply to a request states its decision, or why it could not decide in favour.
+//! Answers to requests for tags and grabs. The referee alone decides; it judges by positions and
+//! needs no request. The reply to a request states its decision, or why it could not grant the
+//! request.
 
 use crate::community::Value;
 use messages::Picture;

@@ -15,11 +15,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// A client without a complete packet for this long is dropped, as by MOOSDB.
+/// Time without a complete packet after which a client is dropped, as by MOOSDB.
 const SILENCE: Duration = Duration::from_secs(5);
-/// A client that accepts no byte for this long is dropped.
+/// Time without accepting a byte after which a client is dropped.
 const WRITE_MAX: Duration = Duration::from_secs(2);
-/// How often threads check whether they should end.
+/// Interval at which threads check whether they should end.
 const LOOK_AGAIN: Duration = Duration::from_millis(500);
 
 /// A database that accepts clients.
@@ -30,7 +30,7 @@ pub(crate) struct Server {
     is_closed: Arc<AtomicBool>,
 }
 
-/// What all threads of a server share.
+/// State shared by all threads of a server.
 #[derive(Clone)]
 struct Shared {
     database: Arc<Watched<Database>>,
@@ -84,8 +84,8 @@ impl Server {
 impl Drop for Server {
     fn drop(&mut self) {
         self.is_closed.store(true, Ordering::Relaxed);
-        // Ends the wait for the next client; without a route to itself, the thread ends with the
-        // process.
+        // This ends the wait for the next client; if the server cannot connect to itself, the
+        // thread ends with the process.
         drop(TcpStream::connect_timeout(&self.address, LOOK_AGAIN));
     }
 }
@@ -97,7 +97,7 @@ fn accept(listener: &TcpListener, shared: &Shared, is_closed: &Arc<AtomicBool>) 
             return;
         }
         let Ok(stream) = stream else {
-            // For example too many open files: a pause instead of a busy loop.
+            // For example, too many open files: pause instead of busy-looping.
             clock::rest(LOOK_AGAIN);
             continue;
         };
@@ -115,7 +115,7 @@ fn accept(listener: &TcpListener, shared: &Shared, is_closed: &Arc<AtomicBool>) 
             serve(&shared, &stream, &is_closed);
             drop(stream.shutdown(Shutdown::Both));
         };
-        // Without a thread, the connection closes and the client tries again.
+        // If the thread cannot start, the connection closes and the client tries again.
         drop(start_thread("moos client", serve));
     }
 }
@@ -136,7 +136,7 @@ fn serve(shared: &Shared, stream: &TcpStream, is_closed: &AtomicBool) {
     let (welcome, mail) = match database.visit(|database| database.admit(&hello, now_s)) {
         Ok(admitted) => admitted,
         Err(reason) => {
-            // The client has gone if this fails.
+            // If this fails, the client is already gone.
             let poison = Msg::text(Kind::POISON, "", &reason, now_s);
             drop((&mut &*stream).write_all(&wire::packet_of(&[poison])));
             return;
@@ -180,7 +180,7 @@ fn read(
             }
             continue;
         }
-        // A synchronous client waits for exactly one packet, with the time in front.
+        // A synchronous client waits for exactly one packet, which begins with the time.
         let null = Msg::number(Kind::NULL, "", moos.now_s(), now_s);
         let answer = mail.visit(|mail| mail.take_packet(Some(&null)));
         if (&mut &*packets.stream)
@@ -215,10 +215,10 @@ fn start_writer(
                 return;
             }
             if packet.is_some_and(|packet| stream.write_all(&packet).is_err()) {
-                // Unless the reading thread has counted it.
+                // Unless the reading thread has already counted it.
                 let is_counted = mail.visit(|mail| mail.is_closed);
                 database.visit(|database| database.dropped.stalled += u64::from(!is_counted));
-                // Ends the reading thread too.
+                // This ends the reading thread too.
                 drop(stream.shutdown(Shutdown::Both));
                 return;
             }
@@ -229,11 +229,11 @@ fn start_writer(
 /// Why a connection has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The peer has left, or this side closes.
+    /// The peer has left, or this side closes the connection.
     Closed,
     /// The peer was silent.
     Stalled,
-    /// The peer sent bytes that are not a packet.
+    /// The peer sent bytes that do not form a packet.
     Malformed,
 }
 
@@ -256,14 +256,14 @@ impl<'a> Packets<'a> {
         }
     }
 
-    /// The name in a client's handshake; none if it is not a MOOS client.
+    /// The name in a client's handshake; `None` if it is not a MOOS client.
     fn greeting(&mut self) -> Option<Msg> {
         let mut greeting = [0; wire::GREETING.len()];
         let mut length = 0;
         let start = clock::now();
         while length < greeting.len() {
             length += self.read_some(&mut greeting[length..])?;
-            // Each byte on its own must not extend the time.
+            // Single bytes must not extend the time.
             if clock::since(start) > SILENCE {
                 return None;
             }
@@ -279,7 +279,7 @@ impl<'a> Packets<'a> {
             .filter(|msg| msg.kind == Kind::DATA)
     }
 
-    /// The messages of the next packet; none at the end of the connection.
+    /// The messages of the next packet; `None` at the end of the connection.
     pub(crate) fn next_packet(&mut self) -> Option<Vec<Msg>> {
         let start = clock::now();
         let mut bytes = [0; 16 << 10];
@@ -301,7 +301,7 @@ impl<'a> Packets<'a> {
         }
     }
 
-    /// Bytes read; 0 after a timeout, none at the end of the connection.
+    /// The number of bytes read; 0 after a timeout, `None` at the end of the connection.
     fn read_some(&mut self, bytes: &mut [u8]) -> Option<usize> {
         if self.is_closed.load(Ordering::Relaxed) {
             return None;
@@ -330,7 +330,7 @@ mod tests {
     use std::time::Instant;
 
     const MOOS: MoosClock = MoosClock { warp: 4.0 };
-    /// Limit for everything that a test waits for.
+    /// Limit on every wait in a test.
     const LIMIT: Duration = Duration::from_secs(20);
 
     fn server() -> Server {
@@ -362,7 +362,7 @@ mod tests {
             self.0.write_all(&wire::packet_of(messages)).unwrap();
         }
 
-        /// The next packet; none if the server closes the connection.
+        /// The next packet; `None` if the server closes the connection.
         fn next_packet(&mut self) -> Option<Vec<Msg>> {
             loop {
                 if let Some(packet) = self.1.next_packet().unwrap() {
@@ -466,7 +466,7 @@ mod tests {
         other.send(&[Msg::number(Kind::REGISTER, "COUNT", 0.0, MOOS.now_s())]);
         let start = clock::now();
         let mut count = 0.0;
-        // Until the deaf client is dropped, each value reaches the other one.
+        // Until the unresponsive client is dropped, each value reaches the other one.
         wait_for(start, "the deaf client is dropped", || {
             count += 1.0;
             server.visit(|database, now_s| {

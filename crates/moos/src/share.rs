@@ -18,7 +18,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Sends to these addresses, and listens at `listen`.
+    /// Opens a socket that sends to these addresses and listens at `listen`.
     ///
     /// # Errors
     /// If the port is in use or the system refuses.
@@ -32,7 +32,7 @@ impl Share {
         })
     }
 
-    /// The address at which it listens.
+    /// The address on which the socket listens.
     ///
     /// # Errors
     /// If the system does not know it.

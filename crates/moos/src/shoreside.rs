@@ -1,4 +1,5 @@
-//! The shoreside as a MOOS community: what pMarineViewer draws, from the frames for observers.
+//! The shoreside as a MOOS community: publishes variables for pMarineViewer, from the frames for
+//! observers.
 
 use crate::boat::mode_of;
 use crate::clock::MoosClock;
@@ -19,11 +20,11 @@ use std::time::Duration;
 
 /// Interval at which drawings are published again, for viewers that connect late.
 const REDRAW_S: f64 = 5.0;
-/// How often the shoreside reads commands while no frame arrives.
+/// Interval at which the shoreside reads commands while no frame arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How far a flag is drawn behind its carrier, m.
+/// Distance at which a flag is drawn behind its carrier, m.
 const ASTERN_M: f64 = 3.0;
-/// The variables that people at the shoreside set for all boats (`_ALL`) or one of them.
+/// The variables that people at the shoreside set for all boats (`_ALL`) or for one.
 const COMMANDS: [&str; 5] = [
     "DEPLOY",
     "RETURN",
@@ -47,7 +48,7 @@ pub(crate) struct Shoreside<'a> {
     pub(crate) redraw_s: f64,
 }
 
-/// The variables that the shoreside reads: commands, and the start of a viewer.
+/// The variables that the shoreside reads: commands, and the start-up of a viewer.
 pub(crate) fn reads(scenario: &Scenario) -> BTreeSet<String> {
     let names = scenario
         .vehicles
@@ -163,7 +164,8 @@ impl Shoreside<'_> {
                 carrier.map_or(flag.home, |boat| astern(&boat.nav)),
             );
             let key = format!("VIEW_MARKER {i}");
-            // One variable draws all flags; each flag is checked for changes separately.
+            // One variable contains the drawings of all flags; each flag is checked for changes
+            // separately.
             if community.is_change(&key, &marker) {
                 sent.push(community.publish("VIEW_MARKER", Value::Text(marker)));
             }
@@ -201,7 +203,7 @@ impl Shoreside<'_> {
             .collect()
     }
 
-    /// Shows what the helms of this bridge draw, for example their next waypoints.
+    /// Passes on drawings of this bridge's helms, for example their next waypoints.
     fn pass_drawings(&self, community: &mut Community) {
         for boat in &self.boats {
             for msg in boat.visit(|boat| std::mem::take(&mut boat.drawings)) {
@@ -251,7 +253,7 @@ fn pass_command(boat: &mut Community, msg: &Msg) {
     }
 }
 
-/// Whether the node's keys, if any, let it see the true state.
+/// Whether the node's keys, if any, allow it to see the true state.
 pub(crate) fn check_keys(bus: &Bus) -> Result<(), String> {
     use bus::keys::Identity;
     match &bus.keys {

@@ -1,7 +1,7 @@
 //! The wire format of MOOSDB, protocol 4.1: messages, packets and their framing, without sockets.
 //!
-//! All numbers are little endian. A packet is its length in bytes (i32, itself included), the
-//! number of messages (i32), a compression flag (u8, always 0), and the messages. A datagram of
+//! All numbers are little-endian. A packet consists of its length in bytes (i32, itself included),
+//! the number of messages (i32), a compression flag (u8, always 0), and the messages. A datagram of
 //! pShare is one message without a packet.
 
 use std::collections::BTreeMap;
@@ -17,10 +17,10 @@ pub const PACKET_MAX: usize = 4 << 20;
 pub const MESSAGE_MAX: usize = 256 << 10;
 /// Length of a packet's header, bytes.
 const HEADER: usize = 9;
-/// Length of a message without its texts, bytes.
+/// Length of a message without its strings, bytes.
 const FIXED: usize = 54;
 
-/// The kind of a message. Unknown kinds are kept as they are.
+/// The kind of a message. Unknown kinds are kept unchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Kind(pub u8);
 
@@ -55,7 +55,7 @@ pub enum DataType {
     /// A number.
     #[default]
     Double,
-    /// Text.
+    /// A string.
     String,
     /// Bytes.
     Binary,
@@ -92,7 +92,7 @@ pub struct Msg {
     pub number: f64,
     /// A second number.
     pub number2: f64,
-    /// The value of text and binary data.
+    /// The value of string and binary data.
     pub bytes: Vec<u8>,
 }
 
@@ -108,7 +108,7 @@ impl Msg {
         }
     }
 
-    /// A message of this kind with text.
+    /// A message of this kind with a string.
     pub fn text(kind: Kind, key: &str, text: &str, time_s: f64) -> Msg {
         Msg {
             data: DataType::String,
@@ -117,14 +117,14 @@ impl Msg {
         }
     }
 
-    /// The text, if the value is valid text.
+    /// The string, if the value is a valid one.
     pub fn as_text(&self) -> Option<&str> {
         std::str::from_utf8(&self.bytes)
             .ok()
             .filter(|_| self.data == DataType::String)
     }
 
-    /// The number, if the value is a number or text that spells one.
+    /// The number, if the value is a number or a string that contains one.
     pub fn as_number(&self) -> Option<f64> {
         match self.data {
             DataType::Double => Some(self.number),
@@ -132,7 +132,7 @@ impl Msg {
         }
     }
 
-    /// The truth value of `true`, `false` and numbers.
+    /// The boolean value of `true`, `false` and numbers.
     pub fn as_bool(&self) -> Option<bool> {
         match self
             .as_text()
@@ -146,10 +146,10 @@ impl Msg {
     }
 }
 
-/// Why bytes are not a packet or a message.
+/// Why bytes do not form a packet or a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Malformed {
-    /// A length that does not fit.
+    /// An invalid length.
     #[error("a length is {0}, which is out of range")]
     Length(i64),
     /// An unknown type of value.
@@ -314,7 +314,7 @@ impl Framer {
     /// The messages of the next complete packet, if there is one.
     ///
     /// # Errors
-    /// [`Malformed`]; the stream is then useless, because the next packet's beginning is unknown.
+    /// [`Malformed`]; the stream is then useless, because the start of the next packet is unknown.
     pub fn next_packet(&mut self) -> Result<Option<Vec<Msg>>, Malformed> {
         if self.unread.len() < HEADER {
             return Ok(None);
@@ -336,7 +336,7 @@ impl Framer {
     }
 }
 
-/// What helms draw for viewers.
+/// Variables with drawings of helms for viewers.
 pub(crate) const DRAWINGS: [&str; 6] = [
     "VIEW_POINT",
     "VIEW_SEGLIST",
@@ -350,8 +350,8 @@ const HEARD_MAX: usize = 1024;
 /// Maximum length of a drawing for the shoreside, bytes.
 const DRAWING_MAX: usize = 8 << 10;
 
-/// Keeps the newest value of each variable, but all drawings, because one variable draws many
-/// things.
+/// Stores the newest value of each variable, but all drawings, because one variable contains many
+/// of them.
 pub(crate) fn keep(heard: &mut BTreeMap<String, Msg>, msg: Msg) {
     let is_drawing = DRAWINGS.contains(&msg.key.as_str());
     let key = match msg.as_text() {

@@ -2,9 +2,9 @@
 
 /// The hyperbolic tangent, accurate to about three units in the last place.
 ///
-/// The rational function of Eigen (`generic_fast_tanh_float`), which ONNX Runtime also uses. It has
-/// only sums, products and one division, so that a layer's values vectorise. `libm::tanhf` takes
-/// longer than the layer's sums.
+/// This is the rational function of Eigen (`generic_fast_tanh_float`), which ONNX Runtime also
+/// uses. It has only sums, products and one division, so that computing a layer's values
+/// vectorises. `libm::tanhf` takes longer than the layer's sums.
 #[inline]
 pub fn tanh(x: f32) -> f32 {
     const ODD: [f32; 7] = [
@@ -17,9 +17,9 @@ pub fn tanh(x: f32) -> f32 {
         4.893_524_6e-3,
     ];
     const EVEN: [f32; 4] = [1.198_258_4e-6, 1.185_347_1e-4, 2.268_434_6e-3, 4.893_525e-3];
-    /// From this value on, the result is 1 in single precision.
+    /// From this value up, the result is 1 in single precision.
     const END: f32 = 7.905_311;
-    /// Up to this value, the result is `x`, which is more exact than the quotient.
+    /// Up to this value, the result is `x`, which is more accurate than the quotient.
     const LINEAR: f32 = 0.0004;
     let above = if x < -END { -END } else { x };
     let inside = if above > END { END } else { above };
@@ -38,7 +38,7 @@ pub(super) fn sigmoid(x: f32) -> f32 {
     1.0 / (1.0 + libm::expf(-x))
 }
 
-/// ln(1 + exp(x)), which does not overflow.
+/// ln(1 + exp(x)), without overflow.
 pub(super) fn softplus(x: f32) -> f32 {
     if x > 0.0 {
         x + libm::log1pf(libm::expf(-x))
@@ -52,7 +52,7 @@ pub(super) fn gelu(x: f32) -> f32 {
     0.5 * x * (1.0 + libm::erff(x * std::f32::consts::FRAC_1_SQRT_2))
 }
 
-/// The approximation of [`gelu`] by a hyperbolic tangent.
+/// The approximation of [`gelu`] with a hyperbolic tangent.
 pub(super) fn gelu_by_tanh(x: f32) -> f32 {
     // sqrt(2 / pi)
     const FACTOR: f32 = 0.797_884_6;

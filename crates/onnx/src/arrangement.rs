@@ -1,6 +1,6 @@
 //! Operators that rearrange numbers, such as reshape, concatenate and slice.
 //!
-//! Reshaping is free: the output shares the input's place because the order stays the same.
+//! Reshaping is free: the order stays the same, so the output shares the input's memory.
 
 use super::NetworkError;
 use super::elementwise::{self, Function};
@@ -47,7 +47,7 @@ pub(super) fn constant(_: &mut Planner, node: &Node) -> Result<Value, NetworkErr
     Ok(Value::Constant(tensor))
 }
 
-/// Plans `Cast` between floats, which are all in single precision here, and integers.
+/// Plans `Cast` between floats, all evaluated in single precision, and integers.
 pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkError> {
     let to = node.integer("to", 0)?;
     let is_among = |types: &[i32]| types.iter().any(|each| i64::from(*each) == to);
@@ -386,7 +386,7 @@ pub(super) fn transpose(planner: &mut Planner, node: &Node) -> Result<Value, Net
     rearranged(planner, value, shape.clone(), || strided(&shape, &strides))
 }
 
-/// The row with its axes in another order.
+/// The row with its axes in a different order.
 pub(super) fn transposed_row(
     planner: &mut Planner,
     row: Row,
@@ -396,7 +396,7 @@ pub(super) fn transposed_row(
     picked(planner, row, shape.clone(), || strided(&shape, &strides))
 }
 
-/// The dimensions and strides of a shape in another order of its axes.
+/// The dimensions and strides of a shape with its axes in a different order.
 fn permuted(before: &[usize], order: &[usize]) -> (Vec<usize>, Vec<usize>) {
     let strides = strides(before);
     order
@@ -428,7 +428,7 @@ pub(super) fn expanded_row(
     picked(planner, row, shape.to_vec(), || repeated(&before, shape))
 }
 
-/// The indices of a shape's numbers, repeated to another shape along its dimensions of 1 and along
+/// The indices of a shape's numbers, repeated to a new shape along its dimensions of 1 and along
 /// new leading ones.
 pub(super) fn repeated(before: &[usize], shape: &[usize]) -> Vec<u32> {
     let own = strides(before)
@@ -576,7 +576,7 @@ fn picked(
     Ok(output)
 }
 
-/// Integers that are an attribute in old files and an input in newer ones.
+/// Integers given as an attribute in old files and as an input in newer ones.
 fn integers(
     planner: &Planner,
     node: &Node,
@@ -607,7 +607,7 @@ pub(super) fn shape_of(value: &Value) -> &[usize] {
     }
 }
 
-/// The same numbers in another shape of the same size.
+/// The same numbers in a different shape of the same size.
 fn reshaped(node: &Node, value: Value, shape: Vec<usize>) -> Result<Value, NetworkError> {
     if shape.len() > RANK_MAX {
         let output = node.proto.output.first();

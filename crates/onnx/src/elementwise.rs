@@ -10,7 +10,7 @@ use super::step::Work;
 use super::tensor::{Numbers, Tensor, product};
 use std::ops::Range;
 
-/// A function of one number. NaN in gives NaN out.
+/// A function of one number. A NaN input yields NaN.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
     Absolute,
@@ -195,7 +195,7 @@ fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32
     }
 }
 
-/// Squares, which normalisations use, are exact products.
+/// Squares, used by normalisations, are computed as exact products.
 fn power(base: f32, exponent: f32) -> f32 {
     if exponent == 2.0 {
         base * base
@@ -250,7 +250,7 @@ pub(super) fn binary(
     if let Some(integers) = integers(planner, node, operation)? {
         return Ok(Value::Constant(integers));
     }
-    // Sums and the like of integers of up to 24 bits are exact in floats, unlike quotients.
+    // Sums and similar results of integers of up to 24 bits are exact in floats, unlike quotients.
     let is_whole = !matches!(
         operation,
         Operation::Divide | Operation::Power | Operation::Slope
@@ -272,7 +272,7 @@ pub(super) fn binary(
     Ok(Value::Computed(Row { element, ..left }))
 }
 
-/// The result of an operation on two constants with integers, such as parts of a shape.
+/// The result of an operation on two integer constants, such as parts of a shape.
 fn integers(
     planner: &mut Planner,
     node: &Node,
@@ -376,8 +376,8 @@ pub(super) fn combine(
     planner.add(Work::Binary { operation, right }, left, shape)
 }
 
-/// The place of a row that repeats to this shape: its own if, without leading ones, its shape is a
-/// suffix of it.
+/// The memory of a row that repeats to this shape: the row's own if its shape, without leading
+/// ones, is a suffix of that shape.
 fn repeatable(
     planner: &mut Planner,
     row: Row,

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Maximum length of a name in a message, characters: names in files can be of any length.
+/// Maximum length of a name in a message (characters), because names in files can be of any length.
 const NAME_MAX: usize = 80;
 
 /// Why a network cannot be read or written.

@@ -1,11 +1,12 @@
-//! Evaluates a trained policy, an ONNX network, one row at a time with the same bits on every
+//! Evaluates a trained policy, an ONNX network, one row at a time, with the same bits on every
 //! machine.
 //!
-//! A general runtime orders its sums by processor and batch size; a game must depend on neither.
-//! Here the operations and their order are fixed when the file is read. Shapes are checked then, so
-//! that [`Network::evaluate`] neither fails nor allocates. `operator.rs` lists the supported
-//! operators. Files come from PyTorch or from [`Perceptron`]. In PyTorch, export the part of a
-//! policy that outputs logits with `torch.onnx.export(…, external_data=False)`.
+//! In a general runtime, the order of sums depends on the processor and the batch size; a game must
+//! depend on neither. In this crate, the operations and their order are fixed when the file is
+//! read. Shapes are checked at that time, so that [`Network::evaluate`] neither fails nor
+//! allocates. `operator.rs` lists the supported operators. Files come from PyTorch or from
+//! [`Perceptron`]. In PyTorch, export the part of a policy that outputs logits with
+//! `torch.onnx.export(…, external_data=False)`.
 
 mod activation;
 mod arrangement;
@@ -55,8 +56,8 @@ pub struct Network {
 }
 
 impl Network {
-    /// Reads an ONNX file. A first dimension of 1 or without a size is the batch dimension, of
-    /// which one row is evaluated.
+    /// Reads an ONNX file. A first dimension that is 1 or has no size is the batch dimension; only
+    /// one row of it is evaluated.
     ///
     /// # Errors
     /// If the bytes are not an ONNX file, exceed the limits on memory or time, or use an

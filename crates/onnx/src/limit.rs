@@ -1,12 +1,13 @@
-//! Limits on the memory and time that a file may take, checked before parsing.
+//! Limits on the memory and time that a file may require, checked before parsing.
 //!
-//! Fields are counted first: the parser can turn two bytes into a struct of hundreds of bytes.
+//! Fields are counted first, because the parser can turn two bytes into a struct of hundreds of
+//! bytes.
 
 use super::NetworkError;
 
 /// Maximum size of a file, bytes.
 pub(super) const FILE_BYTES_MAX: usize = 64 << 20;
-/// Maximum number of fields in a file, with the elements of shapes and attributes but without
+/// Maximum number of fields in a file, including the elements of shapes and attributes but not
 /// weights.
 pub(super) const FIELDS_MAX: usize = 100_000;
 /// Maximum number of weights in evaluation layout.
@@ -49,7 +50,7 @@ enum Content {
     Message(Kind),
     /// Consecutive numbers of at least one byte each.
     Integers,
-    /// Takes about the same memory as in the file.
+    /// Requires about as much memory as in the file.
     Plain,
 }
 

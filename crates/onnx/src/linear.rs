@@ -13,8 +13,8 @@ const LANES: usize = 16;
 /// A weight matrix and a bias, laid out for evaluation.
 ///
 /// Each output is `bias + x[0] w[0] + x[1] w[1] + …`. Products are added one by one in this order,
-/// and each is rounded twice. Only different outputs are computed in parallel, so the register
-/// width does not affect the result.
+/// with separate rounding of product and sum. Only different outputs are computed in parallel, so
+/// the register width does not affect the result.
 pub(super) struct Linear {
     inputs: usize,
     outputs: usize,

@@ -12,7 +12,7 @@ use std::ops::RangeInclusive;
 
 pub(super) struct Operator {
     pub(super) name: &'static str,
-    /// Attributes that are supported or have no effect here.
+    /// Attributes that are supported or do not affect the result.
     pub(super) attributes: &'static [&'static str],
     pub(super) inputs: RangeInclusive<usize>,
     pub(super) plan: fn(&mut Planner, &Node) -> Result<Value, NetworkError>,

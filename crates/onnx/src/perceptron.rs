@@ -9,7 +9,8 @@ use super::{Network, NetworkError};
 use prost::Message;
 use std::collections::BTreeMap;
 
-/// Format and operator set versions of written files: those of ONNX 1.12, which all runtimes read.
+/// Format and operator set versions of written files: those of ONNX 1.12, which all runtimes
+/// support.
 const IR_VERSION: i64 = 8;
 const OPERATORS_VERSION: i64 = 17;
 
@@ -25,7 +26,7 @@ pub struct Perceptron {
     pub heads: Vec<Head>,
     /// Whether the hyperbolic tangent follows each output.
     pub bounded: bool,
-    /// The file's metadata.
+    /// The metadata of the file.
     pub metadata: BTreeMap<String, String>,
 }
 
@@ -52,11 +53,11 @@ pub struct Head {
 }
 
 impl Perceptron {
-    /// This perceptron as an ONNX file; always the same bytes for the same perceptron.
+    /// This perceptron as an ONNX file; the same perceptron always gives the same bytes.
     ///
     /// # Errors
     /// If sizes do not match, a number is non-finite, or [`Network::read`] would reject the file
-    /// for another reason.
+    /// for any other reason.
     pub fn onnx(&self) -> Result<Vec<u8>, NetworkError> {
         let first = self
             .hidden
@@ -102,7 +103,7 @@ impl Perceptron {
             metadata_props: self.metadata.iter().map(entry).collect(),
         };
         let bytes = model.encode_to_vec();
-        // A single place checks files for all faults.
+        // All checks of files are in one place.
         Network::read(&bytes)?;
         Ok(bytes)
     }

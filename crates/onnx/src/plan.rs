@@ -22,7 +22,7 @@ pub(super) struct Plan {
     pub(super) digest: u128,
 }
 
-/// The largest integer up to which floats have all integers.
+/// The largest integer up to which all integers have exact floats.
 const INTEGER_MAX: u64 = 1 << 24;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -60,7 +60,7 @@ impl Value {
 #[derive(Default)]
 pub(super) struct Planner {
     known: BTreeMap<String, Value>,
-    /// The places of constants that steps read like computed numbers.
+    /// The locations of constants that steps read like computed numbers.
     placed: BTreeMap<String, Range<usize>>,
     pub(super) values: Vec<f32>,
     pub(super) steps: Vec<Step>,

@@ -5,7 +5,7 @@
 
 use prost::Message;
 
-/// `TensorProto.DataType.FLOAT`, in which everything is evaluated.
+/// `TensorProto.DataType.FLOAT`, the type used in all evaluations.
 pub(super) const FLOAT: i32 = 1;
 /// `TensorProto.DataType.INT32`.
 pub(super) const INT32: i32 = 6;
@@ -21,7 +21,7 @@ pub(super) const DOUBLE: i32 = 11;
 pub(super) const BFLOAT16: i32 = 16;
 /// The types of floats.
 pub(super) const FLOATS: [i32; 4] = [FLOAT, FLOAT16, DOUBLE, BFLOAT16];
-/// The types of integers that are computed.
+/// The supported types of computed integers.
 pub(super) const INTEGERS: [i32; 2] = [INT32, INT64];
 /// `TensorProto.DataLocation.EXTERNAL`.
 pub(super) const EXTERNAL: i32 = 1;
@@ -140,7 +140,7 @@ pub(super) struct AttributeProto {
 
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct TensorProto {
-    // The specification forbids packing here.
+    // The specification does not allow packing for this field.
     #[prost(int64, repeated, packed = "false", tag = "1")]
     pub(super) dims: Vec<i64>,
     #[prost(int32, tag = "2")]

@@ -15,11 +15,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Range, RangeInclusive};
 use xxhash_rust::xxh3::xxh3_128;
 
-/// Operator set versions with the semantics implemented here. Before 7, attributes controlled
+/// Operator set versions with the implemented semantics. Before 7, attributes controlled
 /// broadcasting. The last is from ONNX 1.23; later semantics are unknown.
 const VERSIONS: RangeInclusive<i64> = 7..=28;
 
-/// How the file of a large model begins in a repository without its large files.
+/// The beginning of a large model's file in a repository checked out without its large files.
 const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
 
 /// Operators whose outputs after the first may be unused.
@@ -72,12 +72,12 @@ pub(super) fn read(file: &[u8]) -> Result<(Plan, Vec<f32>), NetworkError> {
     ))
 }
 
-/// The names on which an output depends. The others' nodes are not evaluated.
+/// The names on which an output depends. Nodes that compute only other names are not evaluated.
 fn needed(graph: &GraphProto) -> BTreeSet<&str> {
     let mut needed: BTreeSet<&str> = graph.output.iter().map(|info| info.name.as_str()).collect();
     for node in graph.node.iter().rev() {
         if computes(node, &needed) {
-            // Inputs that are left out have no name.
+            // Omitted inputs have no name.
             needed.extend(
                 node.input
                     .iter()
@@ -173,7 +173,7 @@ fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, Networ
     Ok(ports)
 }
 
-/// The dimensions of an input. The first, the batch, counts as 1 if it lacks a size.
+/// The dimensions of an input. The first, the batch, counts as 1 if its size is missing.
 fn shape(info: &ValueInfoProto) -> Result<Vec<usize>, NetworkError> {
     let wrong =
         |found: String, expected: &str| Err(NetworkError::tensor(&info.name, found, expected));
@@ -342,8 +342,8 @@ fn outputs(
     Ok(outputs)
 }
 
-/// How the declared shape or type of an output deviates from what is computed, which no evaluation
-/// depends on.
+/// How the declared shape or type of an output deviates from the computed one, which does not
+/// affect evaluation.
 fn deviation(info: &ValueInfoProto, found: &[usize]) -> Option<String> {
     let tensor = info.r#type.as_ref()?.tensor_type.as_ref()?;
     let name = shown(&info.name);

@@ -14,7 +14,7 @@ pub(super) enum Scale {
     Logarithmic,
 }
 
-/// Which one of several equal maxima is chosen.
+/// Which of several equal maxima is chosen.
 #[derive(Clone, Copy)]
 pub(super) enum Tie {
     First,
@@ -28,7 +28,7 @@ pub(super) fn softmax(
     scale: Scale,
 ) -> Result<Value, NetworkError> {
     let input = planner.row(node, 0)?;
-    // Before version 13, the dimensions from the axis on count as one.
+    // Before version 13, all dimensions from the axis on are treated as one.
     let (default, is_flattened) = if node.version < 13 {
         (1, true)
     } else {
@@ -67,7 +67,7 @@ pub(super) fn arg_max(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     }))
 }
 
-/// How the numbers of a row become one.
+/// How a row is reduced to one number.
 #[derive(Clone, Copy)]
 pub(super) enum Reduction {
     Sum,

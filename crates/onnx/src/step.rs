@@ -31,7 +31,7 @@ pub(super) enum Work {
         reduction: Reduction,
         row_size: usize,
     },
-    /// Copies blocks of `size` to an offset of the output and then at this distance.
+    /// Copies blocks of `size` numbers to the output, from an offset on and at a fixed distance.
     Spread {
         size: usize,
         offset: usize,
@@ -84,7 +84,7 @@ impl Step {
     }
 }
 
-/// Negative indices count from the end of a row. Those outside the row give NaN.
+/// Negative indices count from the end of a row. Indices outside the row give NaN.
 fn look_up(row_size: usize, input: &[f32], indices: &[f32], output: &mut [f32]) {
     let rows = input.chunks_exact(row_size);
     let per_row = output.len() / rows.len();

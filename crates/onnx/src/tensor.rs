@@ -13,7 +13,7 @@ use std::rc::Rc;
 #[derive(Clone)]
 pub(super) struct Tensor {
     pub(super) shape: Vec<usize>,
-    /// Shared by tensors with the same numbers in other shapes.
+    /// Shared by tensors with the same numbers in different shapes.
     pub(super) numbers: Rc<Numbers>,
 }
 
@@ -61,7 +61,7 @@ impl Tensor {
                 "dimensions of 0 or more",
             ));
         };
-        // Only lists can be empty, such as the shape of a single number.
+        // Only one-dimensional tensors can be empty, such as the shape of a single number.
         if product(&shape) == Some(0) && shape.len() > 1 {
             return Err(NetworkError::tensor(
                 name,

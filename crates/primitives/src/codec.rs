@@ -1,7 +1,7 @@
 //! Encodes and decodes messages: CDR, little-endian, with the 4-byte encapsulation header.
 //!
-//! ROS 2 and its tools read this format. Every message begins with a [`Stamp`], whose version is
-//! checked first: a newer peer causes a clear error instead of garbage.
+//! ROS 2 and its tools can read this format. Every message begins with a [`Stamp`], whose version
+//! is checked first, so that a message from a newer peer causes a clear error instead of garbage.
 
 use crate::stamp::{Message, Stamp};
 use byteorder::LittleEndian;
@@ -12,7 +12,7 @@ use thiserror::Error;
 /// The header of every message: plain CDR, little-endian.
 pub const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
-/// Why bytes are not a message.
+/// Why bytes do not form a message.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum DecodeError {
     /// The first four bytes are not the header of little-endian CDR.
@@ -21,7 +21,7 @@ pub enum DecodeError {
         /// The first bytes found, at most four.
         found: Vec<u8>,
     },
-    /// The sender has another version of this message.
+    /// The sender uses a different version of this message.
     #[error("{schema} has version {found}; this program reads version {expected}")]
     Version {
         /// The message's name.
@@ -49,12 +49,13 @@ pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
     encode_plain(message)
 }
 
-/// Encodes a message of another system, which has no stamp.
+/// Encodes a message for another system, which has no stamp.
 ///
 /// # Panics
-/// If a list has no length in advance: use plain structs of numbers, lists and strings.
+/// If the length of a list is not known in advance: use plain structs of numbers, lists and
+/// strings.
 pub fn encode_plain<T: Serialize>(message: &T) -> Vec<u8> {
-    // Large enough for most messages: growing costs as much as writing.
+    // Large enough for most messages: growing would cost as much as writing.
     let mut bytes = Vec::with_capacity(4096);
     bytes.extend(ENCAPSULATION);
     cdr_encoding::to_writer::<T, LittleEndian, _>(&mut bytes, message)

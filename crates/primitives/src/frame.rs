@@ -29,13 +29,13 @@ pub struct Body {
 /// Position and heading of a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Position of midships from the datum, m.
+    /// Position of the midship point relative to the datum, m.
     pub at: Ned,
     /// Heading, radians clockwise from north.
     pub psi_rad: f64,
 }
 
-/// A boat's motion in the last tick: positions of midships before and after.
+/// A boat's motion in the last tick: positions of the midship point before and after.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
     /// Position before the tick.
@@ -115,7 +115,7 @@ impl Ned {
         self.distance_squared(other).sqrt()
     }
 
-    /// The nearest of `places`; the first of equals.
+    /// The nearest of `places`; the first if several are equally near.
     pub fn nearest_of(self, places: impl Iterator<Item = Ned>) -> Option<Ned> {
         places.min_by(|x, y| {
             self.distance_squared(*x)
@@ -123,13 +123,13 @@ impl Ned {
         })
     }
 
-    /// The bearing of `other` from here, radians clockwise from north.
+    /// The bearing of `other` from this position, radians clockwise from north.
     #[inline]
     pub fn bearing_rad(self, other: Ned) -> f64 {
         math::atan2(other.east - self.east, other.north - self.north)
     }
 
-    /// The direction of this vector, clockwise from north, rad.
+    /// The direction of this vector, radians clockwise from north.
     #[inline]
     pub fn direction_rad(self) -> f64 {
         math::atan2(self.east, self.north)

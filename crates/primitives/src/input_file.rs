@@ -1,20 +1,21 @@
-//! Reads a user's input file up to a size limit. Regular files only: a pipe may never end, and
-//! devices hold no data.
+//! Reads a user's input file up to a size limit. Only regular files: a pipe may never end, and
+//! devices contain no data.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
-/// Size limit of a table that this program appends to, and of a log, bytes: some millions of games.
+/// Size limit (bytes) of a table that this program appends to, and of a log: some millions of
+/// games.
 pub const TABLE_BYTES_MAX: u64 = 2 << 30;
 
 /// Opens a file for reading.
 ///
 /// # Errors
-/// The system's error, or that it is not a regular file.
+/// The system's error, or an error if it is not a regular file.
 pub fn open(path: &Path) -> Result<File, Error> {
-    // A pipe is not even opened: that would block until it has a writer.
+    // A pipe is not even opened, because opening blocks until the pipe has a writer.
     is_file(&std::fs::metadata(path)?)?;
     // Some regular files of `/proc` never end: reading `kmsg` waits for the kernel's next message.
     // For files on disk this flag has no effect.
@@ -27,16 +28,16 @@ pub fn open(path: &Path) -> Result<File, Error> {
     Ok(file)
 }
 
-/// Reads a file of at most `bytes_max` bytes. The reported size does not suffice: files of `/proc`
-/// report 0.
+/// Reads a file of at most `bytes_max` bytes. The reported size cannot be relied on: it is 0 for
+/// files of `/proc`.
 ///
 /// # Errors
-/// The system's error, that it is not a regular file, or that it is too long.
+/// The system's error, or an error if the file is not regular or is too long.
 pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
     let mut bytes = vec![];
     let file = open(path)?;
     let reported = file.metadata()?.len();
-    // A file known to be too long is not read at all: its bytes would fill the memory.
+    // A file known to be too long is not read at all, because its bytes would fill the memory.
     let most = if reported > bytes_max {
         0
     } else {
@@ -62,17 +63,17 @@ pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
 /// Reads a text file.
 ///
 /// # Errors
-/// As above, or that it is not UTF-8.
+/// As above, or an error if it is not UTF-8.
 pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
     String::from_utf8(read(path, bytes_max)?)
         .map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
 }
 
-/// A text in UTF-8. Programs of Windows write UTF-16 with a byte order mark as "Unicode text",
-/// which is converted.
+/// Converts a file's content to UTF-8. Windows programs write UTF-16 with a byte order mark as
+/// "Unicode text".
 ///
 /// # Errors
-/// If such a text is damaged.
+/// If UTF-16 content is damaged.
 pub fn utf_8(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
     let order: fn([u8; 2]) -> u16 = match bytes.get(..2) {
         Some(b"\xff\xfe") => u16::from_le_bytes,
@@ -121,7 +122,7 @@ mod tests {
         );
         let endless = read(Path::new("/proc/self/pagemap"), 1023).expect_err("it is refused");
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
-        // Only root may open it; others are refused immediately.
+        // Only root may open it; other users are refused immediately.
         assert!(read(Path::new("/proc/kmsg"), 1 << 20).is_err());
         assert_eq!(
             read(Path::new("/dev/zero"), 10)

@@ -85,8 +85,8 @@ impl Instructions {
     }
 }
 
-/// Not inlined, because the others cannot be either: otherwise the caller's use of the result would
-/// affect how the kernel is compiled.
+/// Not inlined, like the other variants, which cannot be: otherwise the caller's use of the result
+/// would affect how the kernel is compiled.
 #[inline(never)]
 fn with_baseline<K: Kernel>(kernel: K) -> K::Output {
     kernel.run()

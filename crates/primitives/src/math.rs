@@ -1,8 +1,8 @@
 //! Functions of real numbers that give the same bits on every machine.
 //!
-//! The platform's `sin` or `exp` differ between C libraries in the last bit, and a game must not
-//! depend on the machine. `libm` is plain Rust; `sqrt` is exact by IEEE 754. `clippy.toml` bans the
-//! platform's versions.
+//! Results of the platform's `sin` or `exp` differ between C libraries in the last bit, but a game
+//! must not depend on the machine. `libm` is plain Rust; `sqrt` is exact by IEEE 754. `clippy.toml`
+//! bans the platform's versions.
 
 /// Sine and cosine of an angle in radians.
 #[inline]
@@ -10,8 +10,8 @@ pub fn sin_cos(angle_rad: f64) -> (f64, f64) {
     libm::sincos(angle_rad)
 }
 
-/// Sine and cosine of an angle in degrees, exact at every quarter turn: fields along the axes keep
-/// exact coordinates.
+/// Sine and cosine of an angle in degrees, exact at every quarter turn, so that fields along the
+/// axes keep exact coordinates.
 pub fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
     let turn = angle_deg - 360.0 * (angle_deg / 360.0).floor();
     match turn {
@@ -63,8 +63,8 @@ pub fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Formats a number to `places` decimal places; −0.0 becomes 0, because text comparisons
-/// distinguish them.
+/// Formats a number to `places` decimal places; −0.0 becomes 0, because the two differ when
+/// compared as strings.
 pub fn decimal(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");
     if text.trim_start_matches(['-', '0', '.']).is_empty() {

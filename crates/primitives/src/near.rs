@@ -1,7 +1,7 @@
-//! Finds pairs of boats within a reach, in a defined order.
+//! Finds pairs of boats within a given reach, in a defined order.
 //!
 //! Small fleets are compared pair by pair. Larger fleets are first sorted into square cells: the
-//! cost grows with the number of boats and near pairs, not with the square of the fleet.
+//! cost then grows with the number of boats and near pairs, not with the square of the fleet.
 
 use crate::frame::Ned;
 
@@ -24,7 +24,7 @@ pub struct Near {
     keys: Vec<u64>,
 }
 
-/// Up to this many boats, every pair is compared.
+/// Maximum number of boats for which every pair is compared.
 const FEW: usize = 32;
 
 impl Near {
@@ -65,8 +65,8 @@ impl Near {
         for (i, &key) in self.keys.iter().enumerate() {
             let here = at(vehicle(key));
             let a = key as u16;
-            // Forward half of the neighbourhood: the rest of this cell and the one to the east,
-            // then the three cells to the north. All of these positions advance with the list.
+            // Forward half of the neighbourhood: the rest of this cell and the next one to the
+            // east, then three cells to the north. All of these positions advance with the list.
             let cell = key & !u64::from(u16::MAX);
             let start = cell + ROW - COLUMN;
             let end = cell + ROW + 2 * COLUMN;
@@ -103,9 +103,10 @@ const COLUMN: u64 = 1 << 16;
 /// Difference of keys to the next cell north.
 const ROW: u64 = 1 << 40;
 
-/// A vehicle and its cell in one number: 24 bits of row, 24 of column, 16 of vehicle.
+/// A vehicle and its cell as one number: 24 bits for the row, 24 for the column, 16 for the
+/// vehicle.
 fn key(at: Ned, reach_m: f64, vehicle: u16) -> u64 {
-    // Slightly wider than the reach: rounding never puts near boats two cells apart.
+    // Slightly wider than the reach, so that rounding never puts near boats two cells apart.
     let cell_m = reach_m * 1.000_001;
     // Boats millions of cells away share the outermost cell, which is searched like any other.
     let cell = |metres: f64| ((metres / cell_m).floor().clamp(-8e6, 8e6) + 8_388_608.0) as u64;

@@ -1,8 +1,8 @@
-//! Normal numbers from random bits: the ziggurat of Marsaglia and Tsang (2000), with layer and
-//! position drawn from different bits (Doornik 2005).
+//! Normally distributed numbers from random bits: the ziggurat algorithm of Marsaglia and Tsang
+//! (2000), with layer and position drawn from different bits (Doornik 2005).
 //!
 //! The bell curve is covered by 256 layers of equal area. In 98 of 100 draws a table look-up and a
-//! comparison give the number; only draws beyond the curve's edge need an exponential. It is
+//! comparison yield the number; only draws beyond the curve's edge need an exponential. It is
 //! implemented here because every tick draws dozens of numbers, and a library may change its
 //! algorithm for the same seed.
 
@@ -21,7 +21,7 @@ static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
         bell: bell(edge),
     };
     let mut layers = [layer(0.0); LAYERS + 1];
-    // The lowest is as wide as a rectangle of its area.
+    // The lowest layer is as wide as a rectangle of the same area.
     (layers[0], layers[1]) = (layer(AREA / bell(TAIL_FROM)), layer(TAIL_FROM));
     for i in 2..LAYERS {
         let below = layers[i - 1];
@@ -32,13 +32,13 @@ static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
 
 #[derive(Clone, Copy)]
 struct Layer {
-    /// Its right edge.
+    /// Its right-hand edge.
     edge: f64,
     /// Height of the bell curve at the edge, where the layer begins.
     bell: f64,
 }
 
-/// The bell curve at `x`, 1 at its top.
+/// The bell curve at `x`, 1 at its peak.
 fn bell(x: f64) -> f64 {
     libm::exp(-0.5 * x * x)
 }
@@ -49,15 +49,15 @@ pub(crate) fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// A normal number of mean 0 and variance 1. `bits(n)` is the nth request for 64 random bits, from
-/// 0.
+/// A normally distributed number with mean 0 and variance 1. `bits(n)` is the nth request for 64
+/// random bits, counted from 0.
 #[inline]
 pub(crate) fn normal(mut bits: impl FnMut(u64) -> u64) -> f64 {
     let first = bits(0);
     inside(first).unwrap_or_else(|layer_x| try_on(layer_x, bits))
 }
 
-/// The number if it is under the next layer; otherwise the drawn layer and position.
+/// The number if it lies under the next layer; otherwise the drawn layer and position.
 #[inline]
 fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
     let layers = &*LAYER;

@@ -1,4 +1,4 @@
-//! Writes a user's output file. Does not wait for a reader: a named pipe without a reader is an
+//! Writes a user's output file without waiting for a reader: a named pipe without a reader is an
 //! error.
 
 use rustix::fs::OFlags;
@@ -10,7 +10,7 @@ use std::path::Path;
 /// Creates a file, or empties an existing one.
 ///
 /// # Errors
-/// The system's error, or that it is a pipe without a reader.
+/// The system's error, or an error if it is a pipe without a reader.
 pub fn create(path: &Path) -> Result<File, Error> {
     let mut options = OpenOptions::new();
     options
@@ -26,7 +26,7 @@ pub fn create(path: &Path) -> Result<File, Error> {
             error
         }
     })?;
-    // Opening did not wait; writing to a pipe with a reader may.
+    // Opening did not block; writing to a pipe with a reader may.
     rustix::fs::fcntl_setfl(&file, OFlags::empty())?;
     Ok(file)
 }

@@ -1,14 +1,14 @@
-//! Makes text from files and other nodes safe for a terminal: escapes its control sequences.
+//! Makes strings from files and other nodes safe for a terminal: escapes control sequences in them.
 
 use std::borrow::Cow;
 use std::fmt::Write;
 
 /// Maximum length of a printed line, characters.
 const LINE_MAX: usize = 2000;
-/// Characters shown from the end of a longer line.
+/// Number of characters shown from the end of a longer line.
 const TAIL: usize = 400;
 
-/// A text of many lines. Escapes control characters except line breaks and tabs as in JSON, and
+/// Escapes a string of many lines: control characters except line breaks and tabs as in JSON, and
 /// characters that change the writing direction.
 pub fn text(text: &str) -> Cow<'_, str> {
     spelt(text, |character| {
@@ -16,7 +16,7 @@ pub fn text(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// The same for a text that may have colours (`ESC [ numbers m`).
+/// The same for a string that may contain colours (`ESC [ numbers m`).
 pub fn coloured(text: &str) -> String {
     let mut parts = text.split('\x1b');
     let mut shown = self::text(parts.next().unwrap_or_default()).into_owned();
@@ -31,7 +31,7 @@ pub fn coloured(text: &str) -> String {
     shown
 }
 
-/// One line of a message. Omits the middle of a very long one.
+/// Escapes one line of a message. Omits the middle of a very long one.
 pub fn line(text: &str) -> String {
     shortened(&spelt(text, steers)).into_owned()
 }
@@ -41,7 +41,7 @@ pub fn message(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The same for a message that may have colours.
+/// The same for a message that may contain colours.
 pub fn coloured_message(text: &str) -> String {
     text.split('\n')
         .map(|line| shortened(&coloured(line)).into_owned())
@@ -84,7 +84,7 @@ fn shortened(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{head} … ({surplus} characters) … {tail}"))
 }
 
-/// Appends a line to a text, without trailing blanks.
+/// Appends a line to a string, without trailing blanks.
 pub fn add_line(text: &mut String, args: std::fmt::Arguments<'_>) {
     text.push_str(args.to_string().trim_end_matches(' '));
     text.push('\n');

@@ -1,15 +1,16 @@
-//! Reseeding: a game unchanged up to a time and redrawn after it, for one past and several futures.
+//! Reseeding: a game unchanged up to a certain time and redrawn after it, for one past and several
+//! futures.
 //!
-//! Draws after the time use another seed. Earlier draws stay, and so do those for the whole game
-//! (waves, start positions, roles). A process with memory, such as gusts or receiver drift,
-//! continues from its state: the new future is a possible continuation of the same past.
+//! Draws after that time use a new seed. Earlier draws stay the same, and so do those for the whole
+//! game (waves, start positions, roles). A process with memory, such as gusts or receiver drift,
+//! continues from its current state: the new future is a possible continuation of the same past.
 
 use crate::stream::Noise;
 use crate::time::SimTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A time after which another seed applies. Earlier draws are unchanged.
+/// A time after which a new seed applies. Earlier draws are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reseed {
     /// Time, s.
@@ -72,7 +73,7 @@ impl Seeds {
     }
 }
 
-/// A noise that is replaced by others at certain times.
+/// A noise that is replaced with others at certain times.
 #[derive(Clone, Debug)]
 pub struct TimedNoise {
     first: Noise,
@@ -83,9 +84,9 @@ impl TimedNoise {
     /// The noise for draws at `now`.
     #[inline]
     pub fn at(&self, now: SimTime) -> Noise {
-        // A new key from a time on, instead of a snapshot. This replays the past, which at most
-        // doubles the time of a branch. In return, a branch is a game like any other, with a seed
-        // and a key on the command line, minds included.
+        // A new key takes effect at a certain time, instead of a restored snapshot. The past is
+        // replayed, which at most doubles the time of a branch. In return, a branch is a game like
+        // any other, with a seed and a key on the command line, minds included.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
         self.later
             .iter()

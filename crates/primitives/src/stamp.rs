@@ -9,7 +9,8 @@ pub trait Message {
     const SCHEMA: &'static str;
     /// The version of its layout.
     const VERSION: u8;
-    /// The oldest version still read: same layout, but some fields differ in meaning.
+    /// The oldest version that can still be read: the layout is the same, but some fields differ in
+    /// meaning.
     const OLDEST: u8 = Self::VERSION;
 }
 

@@ -1,7 +1,7 @@
 //! Randomness: one seed per game, from which each named use derives an independent stream.
 //!
-//! A stream is ChaCha8 keyed by the seed and the stream's name: a new consumer never shifts the
-//! numbers of another. The few samplers are implemented here because a library may change its
+//! A stream is ChaCha8 keyed by the seed and the stream's name, so that a new consumer never shifts
+//! the numbers of others. The few samplers are implemented here because a library may change its
 //! algorithm for the same seed.
 
 use crate::normal::{normal, unit};
@@ -33,7 +33,7 @@ impl Stream {
         unit(self.bits())
     }
 
-    /// A number between `low` and `high`.
+    /// A uniform number between `low` and `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
@@ -53,7 +53,7 @@ impl Stream {
         }
     }
 
-    /// A normal number of mean 0 and variance 1.
+    /// A normally distributed number with mean 0 and variance 1.
     pub fn normal(&mut self) -> f64 {
         normal(|_| self.bits())
     }
@@ -68,9 +68,9 @@ impl Stream {
 
 /// Stateless noise: a random number for every count.
 ///
-/// For draws at every tick: a world reset to an earlier tick finds the same numbers again. The
-/// mixing is the finaliser of SplitMix64 (Steele, Lea and Flood 2014), applied to a counter that
-/// starts at a key derived from seed and name.
+/// For draws at every tick: a world reset to an earlier tick draws the same numbers again. The
+/// mixing function is the finaliser of SplitMix64 (Steele, Lea and Flood 2014), applied to a
+/// counter that starts at a key derived from seed and name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Noise(u64);
 
@@ -97,15 +97,15 @@ impl Noise {
         unit(self.bits(count))
     }
 
-    /// Two independent normal numbers of mean 0 and variance 1. Uses two units: those of twice the
-    /// count and of the next number.
+    /// Two independent normally distributed numbers with mean 0 and variance 1. Uses two units:
+    /// those of twice the count and of the next number.
     #[inline]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {
         (self.normal(2 * count), self.normal(2 * count + 1))
     }
 
-    /// A normal number of mean 0 and variance 1, in place of a unit. Further bits, if needed,
-    /// derive from the first.
+    /// A normally distributed number with mean 0 and variance 1, instead of a unit. Further bits,
+    /// if needed, are derived from the first.
     pub fn normal(&self, count: u64) -> f64 {
         let first = self.bits(count);
         normal(|asked| {
@@ -117,7 +117,7 @@ impl Noise {
         })
     }
 
-    /// An exponentially distributed number of mean 1.
+    /// An exponentially distributed number with mean 1.
     pub fn exponential(&self, count: u64) -> f64 {
         -libm::log(1.0 - self.unit(count))
     }
@@ -148,7 +148,7 @@ mod tests {
         assert_eq!(got, PINNED);
     }
 
-    /// Recorded once; a change makes old games unplayable.
+    /// Recorded once; a change would make old games impossible to replay.
     const PINNED: [u64; 3] = [
         16_757_449_972_422_118_870,
         3_474_384_729_306_545_788,
@@ -181,7 +181,7 @@ mod tests {
         assert_ne!(Noise::new(1, "tess").bits(0), noise.bits(0));
         let mean = |f: &dyn Fn(usize) -> f64| (0..pairs.len() - 1).map(f).sum::<f64>() / n as f64;
         let square = |x: f64| x * x;
-        // Five standard errors each.
+        // Within five standard errors each.
         for (what, got, want, within) in [
             ("mean", mean(&|i| pairs[i].0), 0.0, 0.0112),
             ("variance", mean(&|i| square(pairs[i].0)), 1.0, 0.0158),

@@ -1,8 +1,10 @@
-//! Reads `.alog` files of MOOS, from one or more communities of a game, as its recording.
+//! Reads `.alog` files of MOOS, from one or more communities of a game, as a recording of that
+//! game.
 //!
-//! `LOGSTART` aligns their clocks. The game begins when `AQUATICUS_GAME` or `AQUATICUS_GAME_ALL`
-//! becomes `play`, or with the first position. A boat's motion is from `NAV_GT_…`, else `NAV_…` of
-//! its own log, else node reports. Tags without a tag manager's result count as boundary tags.
+//! The communities' clocks are aligned by `LOGSTART`. The game begins when `AQUATICUS_GAME` or
+//! `AQUATICUS_GAME_ALL` becomes `play`, or with the first position. A boat's motion is taken from
+//! `NAV_GT_…`, else from `NAV_…` in its own log, else from node reports. Tags without a result from
+//! a tag manager count as boundary tags.
 
 use crate::{Bag, Decision, Ending, Entry, Header, RecordingError, Writer};
 use messages::picture::{FlagView, Nav};
@@ -20,33 +22,33 @@ use std::path::{Path, PathBuf};
 pub const PACE: &str = "moos_logs";
 /// The first bytes of every log.
 const MAGIC: &[u8] = b"%%%%%%%%";
-/// After this long without a position, a boat's navigation is treated as lost, s.
+/// Time without a position after which a boat's navigation counts as lost, s.
 const SILENCE_S: f64 = 5.0;
-/// Maximum length of a game, s: longer logs are of several games, or their clocks differ.
+/// Maximum length of a game, s: longer logs contain several games, or their clocks differ.
 const LENGTH_MAX_S: f64 = 86_400.0;
-/// Width of the water around the tracks on an unknown field, m.
+/// Width of the water around the tracks if the field is unknown, m.
 const MARGIN_M: f64 = 10.0;
 /// Variables of the log's own boat.
 const OWN: &str = "NAV_GT_X NAV_GT_Y NAV_GT_HEADING NAV_GT_SPEED NAV_X NAV_Y NAV_HEADING NAV_SPEED \
                    TAGGED HAS_FLAG";
 
-/// Times, s, and values.
+/// Times (s) and values.
 type Series = Vec<(f64, f64)>;
 
 /// The contents of a game's logs.
 #[derive(Default)]
 struct Game {
-    /// By boat, team or neither, and variable; `true` and `play` are 1.
+    /// By boat, team or neither, and by variable; `true` and `play` are stored as 1.
     values: BTreeMap<String, BTreeMap<String, Series>>,
     /// The teams of boats.
     teams: BTreeMap<String, String>,
-    /// Times of tags, s, tagged boats, and by whom.
+    /// Tags: time (s), tagged boat, tagger.
     tags: Vec<(f64, String, String)>,
 }
 
 /// Whether a file is a log, by its content.
 pub fn is_log(path: &Path) -> bool {
-    // Opening a named pipe would wait for its writer.
+    // Opening a named pipe would block until it has a writer.
     if !path.is_file() {
         return false;
     }
@@ -56,8 +58,8 @@ pub fn is_log(path: &Path) -> bool {
         .is_ok_and(|()| start == MAGIC)
 }
 
-/// The game in these logs. If `is_known`, it is the game of this scenario; otherwise the boats and
-/// a field around their tracks replace those of the scenario.
+/// The game in these logs. If `is_known`, it is the game of this scenario; otherwise the scenario's
+/// boats and field are replaced with the logged boats and a field around their tracks.
 ///
 /// # Errors
 /// [`RecordingError::Log`] with file and line.
@@ -90,7 +92,7 @@ impl Game {
             // The source comes before the value.
             let (_, value) = next_word(rest);
             let value = value.trim();
-            // Values can have several lines, and the last line can be incomplete.
+            // Values can span several lines, and the last line can be incomplete.
             let (Ok(time_s), false) = (time.parse::<f64>(), value.is_empty()) else {
                 continue;
             };
@@ -110,7 +112,7 @@ impl Game {
         Ok(())
     }
 
-    /// Processes a row. Returns the name of the log's own boat, if the row has it.
+    /// Processes a row. Returns the name of the log's own boat, if the row contains it.
     fn take(&mut self, (at_s, key, value): (f64, &str, &str)) -> Result<Option<String>, String> {
         let field = |name: &str| {
             let mut parts = value.split(',');
@@ -143,7 +145,7 @@ impl Game {
             _ if key.starts_with("HAS_FLAG_") => (&key[9..], "HAS_FLAG"),
             _ => return Ok(None),
         };
-        // Other values of these variables, such as `pause`, have no meaning here.
+        // Other values of these variables, such as `pause`, are ignored.
         if let Ok(value) = number(value) {
             let known = self.values.entry(name_of(whose)).or_default();
             let series = known.entry(what.to_owned()).or_default();
@@ -184,7 +186,7 @@ impl Game {
         let header = Header {
             commit: String::new(),
             game: scenario.name.clone(),
-            // With a time warp, MOOS time is beyond what a date can hold.
+            // With a time warp, MOOS time can exceed the range of dates.
             began_utc_ns: if start_s < 8e9 {
                 (start_s * 1e9) as u64
             } else {
@@ -316,7 +318,7 @@ impl Game {
         }
     }
 
-    /// Reports what has happened to a boat since the previous frame.
+    /// Reports a boat's changes since the previous frame.
     fn tell_changes(
         &self,
         (before, now): (&Frame, &Frame),

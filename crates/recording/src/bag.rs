@@ -25,16 +25,16 @@ pub enum RecordingError {
         /// The system's error.
         reason: std::io::Error,
     },
-    /// A MOOS log cannot be understood; with file and line.
+    /// A MOOS log is invalid; with file and line.
     #[error("{0}")]
     Log(String),
-    /// It can no longer be read.
+    /// The file can no longer be read.
     #[error("cannot read the rest of the recording: {0}")]
     Unread(#[from] std::io::Error),
-    /// It is not a recording of Squall.
+    /// The file is not a Squall recording.
     #[error("not a recording of a game or a gateway: {0}")]
     Foreign(String),
-    /// It is a recording of another kind.
+    /// The recording is of a different kind.
     #[error("not a recording of a {wanted}: it is of a {found}")]
     Kind {
         /// The expected kind.
@@ -42,7 +42,7 @@ pub enum RecordingError {
         /// The kind found.
         found: Kind,
     },
-    /// It was recorded by another version, whose messages may differ in meaning.
+    /// The recording was made by a different version, whose messages may differ in meaning.
     #[error("recorded by Squall {found}; this is {ours}", ours = primitives::VERSION)]
     Version {
         /// The recorder's version.
@@ -58,7 +58,7 @@ pub enum RecordingError {
         /// The decoding error.
         reason: DecodeError,
     },
-    /// A message does not have the expected JSON.
+    /// A message does not contain the expected JSON.
     #[error("message {number} of {topic} is not JSON: {reason}")]
     Json {
         /// The topic.
@@ -85,7 +85,7 @@ pub struct Bag {
     facts: Facts,
     /// Start of the recording: UTC, ns since 1970.
     pub began_utc_ns: u64,
-    /// The facts written at its end; none if the file is truncated.
+    /// The facts written at its end; `None` if the file is truncated.
     pub result: Option<Facts>,
     /// Whether the file is truncated.
     pub is_cut: bool,
@@ -98,7 +98,7 @@ pub struct Bag {
 #[derive(Debug)]
 struct Channel {
     topic: String,
-    /// The schema of CDR messages; none for JSON.
+    /// The schema of CDR messages; `None` for JSON.
     schema: Option<String>,
     /// Whether the message is JSON in a string message.
     is_json: bool,
@@ -109,7 +109,7 @@ struct Channel {
 pub struct RecordedMessage<'a> {
     /// The topic.
     pub topic: &'a str,
-    /// The schema, for CDR; none for JSON.
+    /// The schema, for CDR; `None` for JSON.
     pub schema: Option<&'a str>,
     /// Its number within the topic, from 0.
     pub number: u32,
@@ -153,7 +153,7 @@ impl Bag {
     /// Opens a recording file.
     ///
     /// # Errors
-    /// [`RecordingError`] if it cannot be read, is not a recording, or is from another version.
+    /// [`RecordingError`] if it cannot be read, is not a recording, or is from a different version.
     pub fn open(path: &Path) -> Result<Bag, RecordingError> {
         let file = |reason| RecordingError::File {
             path: path.to_owned(),
@@ -165,7 +165,7 @@ impl Bag {
     /// Opens a recording in memory.
     ///
     /// # Errors
-    /// [`RecordingError`] if the bytes are not a recording, or are from another version.
+    /// [`RecordingError`] if the bytes are not a recording, or are from a different version.
     pub fn of(bytes: Vec<u8>) -> Result<Bag, RecordingError> {
         Bag::of_source(Source::of(bytes))
     }

@@ -13,7 +13,7 @@ pub struct Damaged {
 }
 
 impl Damaged {
-    /// Returns the value of a successful read; otherwise counts a damaged message.
+    /// Returns the value if reading succeeded; otherwise counts a damaged message.
     pub fn sound<T>(&mut self, read: Result<T, RecordingError>) -> Option<T> {
         let error = match read {
             Ok(message) => return Some(message),

@@ -137,8 +137,8 @@ impl Recording {
     /// Opens the recording of a game.
     ///
     /// # Errors
-    /// [`RecordingError`] if it cannot be read, is not the recording of a game, or is of another
-    /// version.
+    /// [`RecordingError`] if it cannot be read, is not the recording of a game, or is from a
+    /// different version.
     pub fn open(path: &Path) -> Result<Recording, RecordingError> {
         Recording::of_bag(Bag::open(path)?)
     }
@@ -154,7 +154,7 @@ impl Recording {
     /// Interprets a recording as that of a game.
     ///
     /// # Errors
-    /// [`RecordingError`] if it is of another kind, or its header is invalid.
+    /// [`RecordingError`] if the recording is of a different kind, or its header is invalid.
     pub fn of_bag(bag: Bag) -> Result<Recording, RecordingError> {
         if bag.kind != Kind::Game {
             return Err(RecordingError::Kind {
@@ -187,7 +187,7 @@ impl Recording {
         &self.header.info.scenario
     }
 
-    /// The ending; none if the file is truncated.
+    /// The ending; `None` if the file is truncated.
     pub fn ending(&self) -> Option<&Ending> {
         self.ending.as_ref()
     }

@@ -1,7 +1,7 @@
-//! Index of the messages in a file: stretches of records, which are read again on demand.
+//! Index of the messages in a file: runs of records, which are read again on demand.
 //!
-//! A recording of a day has ten million messages. Storing each position would take hundreds of
-//! megabytes.
+//! A recording of a whole day has ten million messages. Storing the position of each would take
+//! hundreds of megabytes.
 
 use crate::records::{self, Record};
 use crate::source::Source;
@@ -18,7 +18,7 @@ const MESSAGES_MAX: usize = 256;
 pub(crate) struct IndexEntry {
     pub(crate) channel: u16,
     pub(crate) number: u32,
-    /// Time of the recording's own clock, ns.
+    /// Time by the recording's own clock, ns.
     pub(crate) log_ns: u64,
     pub(crate) utc_ns: u64,
     pub(crate) from: u64,
@@ -26,7 +26,7 @@ pub(crate) struct IndexEntry {
 }
 
 impl IndexEntry {
-    /// The entry of a message record with this byte range; none for other records.
+    /// The entry of a message record with this byte range; `None` for other records.
     fn of(record: &Record<'_>, place: &Range<u64>) -> Option<IndexEntry> {
         let Record::Message { header, .. } = record else {
             return None;
@@ -37,7 +37,7 @@ impl IndexEntry {
             log_ns: header.log_time,
             utc_ns: header.publish_time,
             from: place.start,
-            // Longer records are not read.
+            // Records longer than this are not read.
             length: u32::try_from(place.end - place.start).unwrap_or(u32::MAX),
         })
     }
@@ -64,7 +64,7 @@ pub(crate) struct Index {
     span_utc_ns: Option<(u64, u64)>,
     /// Start of the chunk of the message added last.
     chunk: Option<u64>,
-    /// The most recently used stretch, with its messages.
+    /// The most recently used run of records, with its messages.
     recent: Mutex<Option<(usize, Arc<[IndexEntry]>)>>,
 }
 
@@ -100,7 +100,7 @@ impl Index {
         self.span_utc_ns.map_or(0, |(first, last)| last - first)
     }
 
-    /// The message at a position among all; none if the file can no longer be read.
+    /// The message at a position among all messages; `None` if the file can no longer be read.
     ///
     /// # Panics
     /// If `place` is out of range.

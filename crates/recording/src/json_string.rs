@@ -1,5 +1,5 @@
-//! JSON in a recording: wrapped in a ROS 2 string, because tools of ROS 2 read only files with all
-//! messages in CDR.
+//! JSON in a recording: wrapped in a ROS 2 string, because ROS 2 tools only read files whose
+//! messages are all in CDR.
 
 use primitives::codec::ENCAPSULATION;
 
@@ -7,19 +7,19 @@ use primitives::codec::ENCAPSULATION;
 // Foxglove could plot plain JSON, but rosbag tools refuse a file with mixed encodings or with
 // topics without a schema.
 pub(crate) const SCHEMA: &str = "std_msgs/msg/String";
-/// Its definition.
+/// The definition of the wrapper.
 pub(crate) const DEFINITION: &str = "string data\n";
 
-/// Size of the prefix: encapsulation header and length of the text, including its NUL.
+/// Size of the prefix: encapsulation header and length of the string, including its NUL.
 const BEFORE: usize = ENCAPSULATION.len() + 4;
 
-/// Wraps a text in a string message.
+/// Wraps JSON in a string message.
 pub(crate) fn wrap(text: &[u8]) -> Vec<u8> {
     let length = u32::try_from(text.len() + 1).unwrap_or(u32::MAX);
     [&ENCAPSULATION[..], &length.to_le_bytes(), text, &[0]].concat()
 }
 
-/// Unwraps the text of a message. A damaged message is returned whole, which does not parse as
+/// Unwraps the JSON of a message. A damaged message is returned whole, which does not parse as
 /// JSON.
 pub(crate) fn text_of(mut message: Vec<u8>) -> Vec<u8> {
     let text = BEFORE..message.len().saturating_sub(1);

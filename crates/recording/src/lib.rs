@@ -15,11 +15,11 @@
 //! | `link/<boat>` | every byte of the link, both ways | message |
 //! | `input`, `event` | all other inputs of the gateway, and its events | JSON |
 //!
-//! All messages are CDR, as the profile `ros2` demands: either one of ours, or a JSON object as the
-//! text of a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,
+//! All messages are CDR, as the profile `ros2` demands: either a Squall message, or a JSON object
+//! in a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,
 //! counted from the UTC at which the recording began; `publish_time` is UTC when the message was
 //! recorded. Both are in ns since 1970. `sequence` counts messages within a topic. Schemas are
-//! complete ROS 2 message definitions. Chunks are not compressed and are written whole, so that a
+//! complete ROS 2 message definitions. Chunks are uncompressed and always written whole, so that a
 //! truncated file is valid up to its last chunk.
 //!
 //! The first metadata is the header, with its own checksum: `squall` for a game (version, commit,
@@ -52,7 +52,7 @@ use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// The file with the turning points of a recorded game, beside the recording.
+/// The file with the turning points of a recorded game, next to the recording.
 pub fn turning_points_of(recording: &Path) -> PathBuf {
     recording.with_extension("turning-points.json")
 }
@@ -99,7 +99,7 @@ const VERSION: &str = "version";
 const BEGAN: &str = "began_utc_ns";
 const CHECKSUM: &str = "checksum";
 
-/// The CRC-32 of these facts, without the checksum itself. MCAP has checksums for each chunk and,
+/// The CRC-32 of these facts, excluding the checksum itself. MCAP has checksums for each chunk and,
 /// at the end, for the whole file; the header needs its own because the end may be missing.
 fn checksum(facts: &Facts) -> String {
     let mut hasher = crc32fast::Hasher::new();
@@ -114,7 +114,7 @@ fn checksum(facts: &Facts) -> String {
 /// Why recording failed.
 #[derive(Debug, Error)]
 pub enum RecordError {
-    /// The data does not fit the format.
+    /// The data does not conform to the format.
     #[error("the recording cannot be written: {0}")]
     Mcap(mcap::McapError),
     /// The file is missing or not writable, or the disk is full.
@@ -125,7 +125,7 @@ pub enum RecordError {
 impl From<mcap::McapError> for RecordError {
     fn from(error: mcap::McapError) -> RecordError {
         match error {
-            // The system's error is the helpful one.
+            // The system's error is the informative one.
             mcap::McapError::Io(error) => error.into(),
             other => RecordError::Mcap(other),
         }

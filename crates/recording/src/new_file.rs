@@ -1,26 +1,26 @@
-//! The file of a recording: created exclusively, so that no two programs record into the same one.
+//! The file of a recording: created exclusively, so that no two programs record to the same one.
 
 use crate::{RecordError, utc};
 use std::fs::{File, OpenOptions};
 use std::io::{Error, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// Upper bound of recordings with the same name.
+/// Maximum number of recordings with the same name.
 const NAMES_MAX: u32 = 1000;
-/// Space that must be free on the disk, bytes.
+/// Minimum free space on disk, bytes.
 const SPACE_MIN: usize = 1 << 16;
 
 /// A new file for a recording. Dropping it unused removes the file.
 #[derive(Debug)]
 pub struct NewFile {
     path: PathBuf,
-    /// None after use.
+    /// `None` after use.
     pub(crate) file: Option<File>,
-    /// Whether another process created it, and removes it if it stays empty.
+    /// Whether a different process created the file and will remove it if it stays empty.
     is_lent: bool,
 }
 
-/// A new file that a child process records into. Dropping it removes the file if it is empty.
+/// A new file to which a child process records. Dropping it removes the file if it is empty.
 #[derive(Debug)]
 pub struct LentFile(PathBuf);
 
@@ -66,7 +66,7 @@ impl NewFile {
         created
     }
 
-    /// The file for a child process: uses an empty file lent by its parent, or creates it.
+    /// The file for a child process: an empty one lent by its parent, or else a new one.
     ///
     /// # Errors
     /// [`RecordError`] if it cannot be opened or created, or already contains something.
@@ -101,7 +101,7 @@ impl Drop for NewFile {
     fn drop(&mut self) {
         // If this fails, an unfinished file remains.
         match &self.file {
-            // Only the lender removes it: by now the name may belong to another program.
+            // Only the lender removes the file: by now the name may belong to a different program.
             Some(file) if self.is_lent => drop(file.set_len(0)),
             Some(_) => drop(std::fs::remove_file(&self.path)),
             None => {}

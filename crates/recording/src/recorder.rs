@@ -11,27 +11,27 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Period of flushes to the system. Each flush closes a chunk, whose index entry stays in memory
-/// until the file ends, about 500 bytes. At four per second, that came to 5 MB an hour.
+/// Period of flushes to the system. Each flush closes a chunk, whose index entry (about 500 bytes)
+/// stays in memory until the file ends. With four flushes per second, that came to 5 MB an hour.
 const FLUSH: Duration = Duration::from_secs(1);
-/// Time for which entries accumulate: waking for each one would cost the game more than writing
-/// does.
+/// Time for which entries accumulate: waking for each one would cost the game more than the writing
+/// itself.
 const GATHER: Duration = Duration::from_millis(20);
 /// Size of the write buffer, bytes.
 const BUFFER: usize = 1 << 16;
-/// Memory limit of entries that wait for the disk, bytes.
+/// Memory limit of entries waiting for the disk, bytes.
 const WAITING_BYTES: usize = 128 << 20;
-/// Limit of the number of waiting entries.
+/// Maximum number of waiting entries.
 const WAITING: usize = 1 << 14;
 
 /// Writes a recording on its own thread. Dropping it completes the file without a result.
 pub struct Recorder {
     path: PathBuf,
     jobs: SyncSender<Job>,
-    /// Limit of waiting data, bytes.
+    /// Maximum size of waiting data, bytes.
     waiting_max: usize,
     shared: Arc<Shared>,
-    /// None after the end.
+    /// `None` after the end.
     thread: Option<JoinHandle<()>>,
 }
 
@@ -85,9 +85,9 @@ impl Recorder {
         let theirs = Arc::clone(&shared);
         let size_of = path.clone();
         let thread = std::thread::Builder::new().name("recorder".to_owned());
-        // In the sim's process instead of an observer on the network, which the sim would have to
-        // wait for or which would miss messages. The game passes copies; `benches/recording.rs`
-        // measures the cost.
+        // The recorder runs in the sim's process rather than as an observer on the network, which
+        // the sim would have to wait for or which would miss messages. The game passes copies;
+        // `benches/recording.rs` measures the cost.
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
         Ok(Recorder {
             path,
@@ -102,8 +102,8 @@ impl Recorder {
     pub fn record(&self, entry: Entry) {
         let size = entry.size();
         let bytes = self.shared.waiting_bytes.fetch_add(size, Ordering::Relaxed) + size;
-        // Entries that the disk is too slow for are dropped and counted, so they never delay a
-        // game. `--check` names the gaps and does not mistake them for divergence.
+        // Entries are dropped and counted if the disk is too slow, so that they never delay a game.
+        // `--check` reports the gaps and does not mistake them for divergence.
         let has_room = bytes <= self.waiting_max;
         let is_taken = has_room && self.jobs.try_send(Job::Write(entry, utc::now_ns())).is_ok();
         if !is_taken {
@@ -216,7 +216,7 @@ fn write<W: Write + Seek>(
     update_size();
 }
 
-/// Lets entries accumulate, so that the recording threads need not wake this one.
+/// Lets entries accumulate, so that the game's threads need not wake this one for each.
 #[expect(
     clippy::disallowed_methods,
     reason = "entries are written in batches, by the clock"
@@ -242,7 +242,7 @@ mod tests {
     use std::io::{Cursor, ErrorKind, SeekFrom};
     use std::sync::Mutex;
 
-    /// A disk with room for a limited number of bytes. It blocks while another thread holds the
+    /// A disk with space for a limited number of bytes. It blocks while another thread holds the
     /// lock.
     #[derive(Clone)]
     struct Disk(Arc<Mutex<Cursor<Vec<u8>>>>, usize);

@@ -1,7 +1,7 @@
-//! Reads the records of an MCAP file one by one, up to a truncation.
+//! Reads the records of an MCAP file one by one, up to where it is truncated.
 //!
 //! The library's own readers treat a chunk as one unit and would lose a truncated one entirely. Our
-//! chunks are not compressed, so their records can be read up to the cut.
+//! chunks are uncompressed, so their records can be read up to the truncation.
 
 use crate::RecordingError;
 use crate::source::Source;
@@ -18,7 +18,7 @@ const CHUNK_CRC_AT: u64 = 3 * 8;
 const MESSAGE_HEADER: u64 = 2 + 4 + 8 + 8;
 /// Size of everything before the bytes of a message.
 pub(crate) const MESSAGE_PREFIX: u64 = PREFIX + MESSAGE_HEADER;
-/// The longest record read: longer than any network message or scenario.
+/// The longest record that is read: longer than any network message or scenario.
 const RECORD_MAX: u64 = 64 << 20;
 
 /// The readable extent of a file.
@@ -26,14 +26,14 @@ const RECORD_MAX: u64 = 64 << 20;
 pub(crate) struct Extent {
     /// Whether the file is truncated.
     pub(crate) is_cut: bool,
-    /// Byte ranges that do not match the checksum of their chunk; the whole file if no chunk is to
-    /// blame.
+    /// Byte ranges that do not match the checksum of their chunk; the whole file if the mismatch
+    /// cannot be attributed to a chunk.
     pub(crate) damage: Vec<Range<u64>>,
 }
 
-/// Calls `take` with every schema, channel, message and metadata, including those in chunks. A
-/// message comes as its header and the byte range of its content; every record with the start of
-/// its chunk, or 0. A damaged chunk is read up to the first invalid record.
+/// Calls `take` with every schema, channel, message and metadata record, including those in chunks.
+/// A message is passed as its header and the byte range of its content; every record with the start
+/// of its chunk, or 0. A damaged chunk is read up to the first invalid record.
 pub(crate) fn for_each_record(
     source: &Source,
     mut take: impl FnMut(Record<'_>, Range<u64>, u64),
@@ -135,7 +135,7 @@ fn give(
             body.start
         ))
     };
-    // Per opcode: the texts it contains, the bytes before them, and whether a list of texts
+    // Per opcode: the number of strings, the bytes before them, and whether a list of strings
     // follows. Other opcodes are ignored.
     let (fixed, texts, has_list) = match opcode {
         op::SCHEMA => (2, 3, false),
@@ -156,7 +156,7 @@ fn give(
         body.end
     };
     let content = source.read(body.start..bytes_from)?;
-    // The library allocates whatever a length field says before checking that the bytes exist.
+    // The library allocates as much as a length field demands before checking that the bytes exist.
     if texts_of(&content, fixed, texts, has_list).is_none() {
         return Err(damaged(&"a string in it is longer than the record"));
     }
@@ -165,7 +165,7 @@ fn give(
     Ok(())
 }
 
-/// Checks that this many texts exist with their stated lengths; `None` if they do not.
+/// Checks that this many strings exist with their stated lengths; `None` if they do not.
 fn texts_of(content: &[u8], fixed: usize, texts: usize, has_list: bool) -> Option<()> {
     let mut rest = content.get(fixed..)?;
     for _ in 0..texts {
@@ -182,7 +182,7 @@ fn texts_of(content: &[u8], fixed: usize, texts: usize, has_list: bool) -> Optio
     Some(())
 }
 
-/// Splits off a text with its length prefix; returns the text and the rest.
+/// Splits off a string with its length prefix; returns the string and the rest.
 fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)

@@ -1,21 +1,21 @@
-//! The bytes of a recording, read piecewise: memory holds at most one buffer, however long the
-//! file.
+//! The bytes of a recording, read piecewise: memory holds at most one buffer, however long the file
+//! is.
 
 use parking_lot::Mutex;
 use std::io::{BufReader, Cursor, Error, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
-/// Read-ahead, bytes. A chunk is many times larger.
+/// Size of the read-ahead, bytes. A chunk is many times larger.
 const BUFFER: usize = 64 << 10;
-/// Marks an unknown position: far enough from any other that the next read always seeks.
+/// Marks an unknown position: so far from any other that the next read always seeks.
 const UNKNOWN: u64 = u64::MAX;
 
 /// A source of bytes: a file or memory.
 trait Bytes: Read + Seek + Send {}
 impl<T: Read + Seek + Send> Bytes for T {}
 
-/// The bytes of a recording, with the length it had when opened.
+/// The bytes of a recording, with its length at opening.
 pub(crate) struct Source {
     reader: Mutex<Reader>,
     /// The number of bytes.

@@ -1,4 +1,4 @@
-//! UTC: the host's clock as text, for stamps and names only. No decision of a game or gateway
+//! UTC: the host's clock as a string, for stamps and names only. No decision of a game or gateway
 //! depends on it.
 
 use time::UtcDateTime;
@@ -38,7 +38,7 @@ pub fn file_stamp(utc_ns: u64) -> String {
     format!("{year:04}{month:02}{day:02}T{hour:02}{minute:02}{second:02}Z")
 }
 
-/// For people: `2026-11-21 22:20:00 UTC`.
+/// Format for display: `2026-11-21 22:20:00 UTC`.
 pub fn text(utc_ns: u64) -> String {
     let (_, [year, month, day, hour, minute, second]) = parts(utc_ns);
     format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02} UTC")

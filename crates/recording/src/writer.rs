@@ -40,7 +40,7 @@ pub enum Entry {
     Message {
         /// The topic, without the game's name.
         topic: String,
-        /// The schema, for CDR; none for JSON.
+        /// The schema, for CDR; `None` for JSON.
         schema: Option<&'static str>,
         /// The encoded message.
         bytes: Vec<u8>,
@@ -105,7 +105,7 @@ impl<W: Write + Seek> Writer<W> {
             .profile("ros2")
             .library(format!("squall {}", primitives::VERSION));
         // A chunk is written only when complete, so the file on disk never needs repair. With
-        // compression (zlib), a 2v2 game would be a quarter to half the size. But that needs C, and
+        // compression (zlib), a 2v2 game would be a quarter to half the size. But zlib needs C, and
         // a truncated file would lose everything from the truncated chunk on.
         let options = options
             .compression(None)
@@ -124,8 +124,8 @@ impl<W: Write + Seek> Writer<W> {
             .entry(VERSION.to_owned())
             .or_insert_with(|| primitives::VERSION.to_owned());
         header.insert(BEGAN.to_owned(), began_utc_ns.to_string());
-        // The header has its own checksum: a truncated file lacks the one over the whole file, and
-        // a header is accepted as a whole or not at all.
+        // The header has its own checksum: a truncated file lacks the checksum of the whole file,
+        // and a header is accepted either as a whole or not at all.
         header.insert(CHECKSUM.to_owned(), checksum(&header));
         for (name, facts) in std::iter::once((kind.header(), header)).chain(more) {
             mcap.write_metadata(&Metadata {
@@ -218,7 +218,7 @@ impl<W: Write + Seek> Writer<W> {
             .map(|input| (*input).into())
             .collect();
         // Inputs as well as their results: a game, including a field game with real boats, can then
-        // be simulated again with another version or in a debugger.
+        // be simulated again with a different version or in a debugger.
         self.put_message(INPUTS, &Inputs { stamp, inputs }, stamp, utc_ns)?;
         self.put_message(FRAME, &*decision.frame, stamp, utc_ns)
     }
@@ -258,7 +258,7 @@ impl<W: Write + Seek> Writer<W> {
                 (id, 0)
             }
         };
-        // Tools plot over simulated time: by the wall clock, a lockstep game of ten minutes that
+        // Tools plot over simulated time: over wall-clock time, a lockstep game of ten minutes that
         // took a second and a half would be a spike. The wall-clock time is `publish_time`.
         let log_time = self
             .began_utc_ns

@@ -1,6 +1,6 @@
-//! Squall's frames and REP 103: north-east-down with headings clockwise from north becomes
-//! east-north-up with yaw anticlockwise from east. Bodies with starboard and down become bodies
-//! with port and up (`base_link`).
+//! Converts Squall's frames to those of REP 103: north-east-down with headings clockwise from north
+//! becomes east-north-up with yaw anticlockwise from east. Body axes to starboard and down become
+//! axes to port and up (`base_link`).
 
 use crate::message::{
     Header, Imu, NavSatFix, Odometry, Pose, Quaternion, TransformStamped, Twist, TwistStamped,
@@ -30,12 +30,12 @@ pub struct Motion {
     pub roll_rad: f64,
     /// Pitch, bow up, rad.
     pub pitch_rad: f64,
-    /// Gyro and accelerometers; the truth has none.
+    /// Gyro and accelerometers; `None` for the truth.
     pub imu: Option<picture::Imu>,
 }
 
 impl Motion {
-    /// As measured by the boat itself.
+    /// Motion as measured by the boat itself.
     pub fn measured(stamp: Stamp, boat: &OwnBoat) -> Motion {
         let (at, nav) = (stamp.valid_ns, boat.nav);
         // A boat does not measure its attitude: level is the best estimate.
@@ -80,8 +80,8 @@ impl Motion {
     /// Position and orientation of `base_link` in [`MAP`].
     pub fn pose(&self) -> Pose {
         let [x, y, _] = enu(self.nav.at());
-        // Roll keeps its sign: both frames turn about the axis ahead. Pitch turns about an axis to
-        // port instead of starboard.
+        // Roll keeps its sign, because both frames have the same axis ahead. The pitch axis points
+        // to port instead of starboard.
         Pose {
             position: [x, y, self.heave_m],
             orientation: quaternion(self.roll_rad, -self.pitch_rad, FRAC_PI_2 - self.nav.psi_rad),
@@ -203,7 +203,7 @@ pub fn quaternion(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> Quaternion {
 mod tests {
     use super::*;
 
-    /// A boat 3 m north and 4 m east of the datum that heads 30 degrees east of north, makes 2 m/s
+    /// A boat 3 m north and 4 m east of the datum with a heading of 30 degrees, which makes 2 m/s
     /// ahead and 0.5 m/s to starboard, and turns clockwise.
     fn motion() -> Motion {
         let nav = Nav {
@@ -260,7 +260,7 @@ mod tests {
         }
         .pose()
         .orientation;
-        // 30 degrees clockwise from north are 60 degrees anticlockwise from east.
+        // 30 degrees clockwise from north is 60 degrees anticlockwise from east.
         close(turned(level, [1.0, 0.0, 0.0]), [0.5, 0.75_f64.sqrt(), 0.0]);
         close(
             turned(level, [0.0, 1.0, 0.0]),

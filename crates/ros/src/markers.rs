@@ -44,7 +44,7 @@ fn marker(at: SimTime, ns: &str, id: usize, kind: i32, color: Color) -> Marker {
     }
 }
 
-/// A line through these places.
+/// A line through these positions.
 fn line(
     at: SimTime,
     (ns, id): (&str, usize),

@@ -1,5 +1,5 @@
-//! Messages of ROS 2 as the bridge sends and receives them. Fields, their order and their units are
-//! those of the `.msg` files in ROS 2 Jazzy.
+//! ROS 2 messages that the bridge sends and receives. Fields, their order and their units are those
+//! of the `.msg` files in ROS 2 Jazzy.
 
 #![expect(
     missing_docs,
@@ -16,7 +16,7 @@ pub trait RosMessage {
     const TYPE: &'static str;
 }
 
-/// The covariance of a pose or a twist. All zeros: unknown.
+/// The covariance of a pose or a twist. All zeros mean unknown.
 pub type Covariance = [[f64; 6]; 6];
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

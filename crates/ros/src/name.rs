@@ -2,13 +2,13 @@
 //! tokens and attachments, as in its design document.
 //!
 //! The crate `hiroz-protocol` has these too. They amount to four formats and 33 bytes; the crate is
-//! experimental, twelve times as long, and would tie the bridge's zenoh to its own.
+//! experimental, twelve times as long, and would tie the bridge's zenoh version to its own.
 
 use crate::type_hash::type_hash;
 use xxhash_rust::xxh3::xxh3_128;
 
 /// The quality of service of all endpoints: reliable, volatile, the last ten messages. Empty parts
-/// are defaults.
+/// stand for defaults.
 const QOS: &str = "::,10:,:,:,,";
 
 /// The kind of an endpoint.
@@ -22,7 +22,7 @@ pub enum Kind {
     Service,
 }
 
-/// A node as its tokens name it.
+/// A node as named in its tokens.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Node {
     /// The ROS domain.
@@ -35,7 +35,7 @@ pub struct Node {
     pub name: String,
 }
 
-/// `std_msgs/msg/Header` in the form of DDS: `std_msgs::msg::dds_::Header_`.
+/// Converts `std_msgs/msg/Header` to its DDS name: `std_msgs::msg::dds_::Header_`.
 fn dds_name(type_name: &str) -> String {
     let (package, name) = type_name.rsplit_once('/').unwrap_or_default();
     format!("{}::dds_::{name}_", package.replace('/', "::"))
@@ -63,8 +63,8 @@ impl Node {
         format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
     }
 
-    /// The token of one of its endpoints, whose number no other endpoint or node of the session
-    /// has.
+    /// The token of one of its endpoints, whose number must be unique among the session's endpoints
+    /// and nodes.
     pub fn endpoint_token(
         &self,
         endpoint: u32,
@@ -111,8 +111,8 @@ pub fn attachment(sequence: i64, sent_ns: i64, gid: [u8; 16]) -> Vec<u8> {
     .concat()
 }
 
-/// The attachment of the answer to a request with this attachment: its number and sender, at
-/// another time. None if it is not one.
+/// The attachment of the answer to a request with this attachment: its number and sender, with a
+/// new time. `None` if it is not an attachment.
 pub fn answer_attachment(request: &[u8], sent_ns: i64) -> Option<Vec<u8>> {
     let gid = request
         .get(17..33)
@@ -120,7 +120,7 @@ pub fn answer_attachment(request: &[u8], sent_ns: i64) -> Option<Vec<u8>> {
     Some([&request[..8], &sent_ns.to_le_bytes(), &[16], gid].concat())
 }
 
-/// Whether ROS 2 accepts `name` as a part of names of topics, nodes and frames.
+/// Whether ROS 2 accepts `name` as part of the names of topics, nodes and frames.
 pub fn is_ros_name(name: &str) -> bool {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     name.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -132,7 +132,7 @@ pub fn is_ros_name(name: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// The examples of `rmw_zenoh`'s design document, for other types.
+    /// The examples in `rmw_zenoh`'s design document, for different types.
     #[test]
     fn keys_and_tokens_are_those_of_rmw_zenoh() {
         let hash = "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a";

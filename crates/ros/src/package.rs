@@ -1,4 +1,4 @@
-//! The package `squall_msgs` as colcon builds it.
+//! The package `squall_msgs` in the form that colcon builds.
 
 use messages::ros::DEFINITIONS;
 use std::io;

@@ -1,4 +1,4 @@
-//! ROS 2's requests for a boat, and the orders that follow from them while they are valid.
+//! Requests from ROS 2 for a boat, and the resulting orders while they are valid.
 
 use crate::message::Twist;
 use messages::order::Order;
@@ -8,8 +8,8 @@ use messages::{VehicleOrder, order};
 use primitives::{SimTime, VehicleId, angle::wrap_pi};
 use std::f64::consts::FRAC_PI_3;
 
-/// How far the ordered heading may lead the boat's own, rad. A boat that cannot turn as fast as
-/// requested would otherwise continue turning after the request has ended.
+/// Maximum lead of the ordered heading over the boat's own, rad. Without it, a boat that cannot
+/// turn as fast as requested would continue turning after the end of the request.
 const LEAD_MAX_RAD: f64 = FRAC_PI_3;
 /// Maximum yaw rate that a twist may request, rad/s.
 const YAW_RATE_MAX_RAD_S: f64 = 10.0;
@@ -54,7 +54,7 @@ impl SetPoint {
     /// The request in a `squall_msgs/VehicleOrder` for this boat.
     ///
     /// # Errors
-    /// [`Refusal::NotYours`] if it names another boat, [`Refusal::BadNumber`] if its kind is
+    /// [`Refusal::NotYours`] if it names a different boat, [`Refusal::BadNumber`] if its kind is
     /// unknown or a number is out of range.
     pub fn of_order(boat: VehicleId, order: &VehicleOrder) -> Result<SetPoint, Refusal> {
         if order.vehicle != boat {
@@ -69,7 +69,7 @@ impl SetPoint {
     }
 }
 
-/// A request with the number by which a later one differs.
+/// A request with a number that distinguishes it from later ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbered {
     /// Increases with every request.
@@ -81,11 +81,11 @@ pub struct Numbered {
 /// Follows the requests for one boat.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    /// How long a request is valid, in game time.
+    /// Validity of a request, in game time.
     ttl: SimTime,
     /// The number of the newest request, and the first decision that used it.
     newest: Option<(u64, SimTime)>,
-    /// The ordered heading while a twist is valid, rad, and the time of the decision.
+    /// The ordered heading (rad) while a twist is valid, and the time of the decision.
     heading: Option<(f64, SimTime)>,
 }
 
@@ -136,8 +136,8 @@ impl Follower {
         Order::Hold
     }
 
-    /// The ordered heading moves at the requested yaw rate, and the boat follows it: the same rate
-    /// for every hull and controller.
+    /// The ordered heading moves at the requested yaw rate, and the boat follows it, so that the
+    /// rate is the same for every hull and controller.
     fn heading(&mut self, now: SimTime, psi_rad: f64, yaw_rate_rad_s: f64) -> f64 {
         let (before_rad, then) = self.heading.unwrap_or((psi_rad, now));
         let ahead_rad = wrap_pi(before_rad - psi_rad) + yaw_rate_rad_s * (now - then).as_s();
@@ -181,7 +181,7 @@ mod tests {
             psi_rad: 10_f64.to_radians(),
             ..Nav::default()
         };
-        // 0.5 rad/s are 2.86 degrees in 0.1 s, to port from a heading of 10 degrees.
+        // 0.5 rad/s is 2.86 degrees in 0.1 s, to port from a heading of 10 degrees.
         let headings: Vec<f64> = (0..4)
             .map(|i| {
                 heading_deg(follower.order(SimTime(100_000_000 * i), &nav, request(1, 1.5, 0.5)))

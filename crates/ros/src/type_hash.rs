@@ -41,7 +41,7 @@ struct Field {
 }
 
 impl Field {
-    /// Parses a line of a definition: type, name and an optional default. None for constants,
+    /// Parses a line of a definition: type, name and an optional default. `None` for constants,
     /// comments and empty lines.
     fn parse(line: &str, package: &str) -> Option<Field> {
         let line = line.split('#').next()?;
@@ -50,7 +50,7 @@ impl Field {
         if line.contains('=') && !kind.contains("<=") {
             return None;
         }
-        // In type identifiers an array adds 48, a bounded list 96, any other list 144.
+        // In type identifiers, an array adds 48, a bounded list 96, and any other list 144.
         let (base, list, capacity) =
             match kind.strip_suffix(']').and_then(|kind| kind.split_once('[')) {
                 None => (kind, 0, 0),
@@ -100,7 +100,7 @@ fn full_name(name: &str, package: &str) -> String {
     }
 }
 
-/// The definition of a type, without those nested in it.
+/// The definition of a type, without the types nested in it.
 pub fn definition(type_name: &str) -> Option<&'static str> {
     if let Some(own) = type_name.strip_prefix("squall_msgs/msg/") {
         return DEFINITIONS
@@ -118,12 +118,12 @@ pub fn definition(type_name: &str) -> Option<&'static str> {
 /// The hash of a message or service type, for example of `std_msgs/msg/Header`.
 ///
 /// # Panics
-/// If the bridge has no definition of it or of a nested type: a test covers all types in use.
+/// If the bridge has no definition of the type or of a nested one: a test covers all types in use.
 pub fn type_hash(type_name: &str) -> String {
     let mut described = BTreeMap::new();
     describe(type_name, &mut described);
     let own = described.remove(type_name).expect("it was just described");
-    // A map iterates by name: nested descriptions have to be sorted.
+    // A map iterates in order of names, as required for nested descriptions.
     let nested: Vec<String> = described.into_values().collect();
     let json = format!(
         r#"{{"type_description": {own}, "referenced_type_descriptions": [{}]}}"#,
@@ -163,8 +163,8 @@ fn describe(type_name: &str, described: &mut BTreeMap<String, String>) {
 mod tests {
     use super::*;
 
-    /// As ROS 2 Jazzy has them in the keys of `rmw_zenoh_cpp`. `tests/ros_peer.py` compares all
-    /// types with two other implementations.
+    /// As in the keys of `rmw_zenoh_cpp` in ROS 2 Jazzy. `tests/ros_peer.py` compares all types
+    /// with two other implementations.
     #[test]
     fn hashes_are_those_of_ros_2() {
         for (name, want) in [

@@ -1,4 +1,4 @@
-//! Whether a boat may act on others, and whether it may tag: shared by the referee and the minds.
+//! Whether a boat may act on others, and whether it may tag; shared by the referee and the minds.
 
 use super::{Rules, VehicleStanding};
 use primitives::time::SimTime;

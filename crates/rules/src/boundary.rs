@@ -6,8 +6,8 @@ use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
 impl Referee {
-    /// Records boats that left the field or came back. Outside the field no boat carries a flag
-    /// and, with `boundary_tags`, every boat is tagged.
+    /// Records boats that left the field or returned. Outside the field no boat carries a flag and,
+    /// with `boundary_tags`, every boat is tagged.
     pub(super) fn watch_boundary(
         &self,
         standing: &mut Standing,

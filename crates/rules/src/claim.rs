@@ -1,9 +1,9 @@
-//! Claims: competing attempts of boats in one tick, and which of them succeed.
+//! Claims: competing attempts of boats in one tick, and their outcomes.
 
 use super::{Resolution, TagChoice};
 use std::cmp::Ordering;
 
-/// Boat `by` claims `on` (a boat to tag, a flag to grab).
+/// Boat `by` claims `on`, a boat to tag or a flag to grab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Claim {
     pub(super) by: u16,
@@ -17,13 +17,13 @@ impl Claim {
     }
 }
 
-/// Reduces the claims to the granted ones.
+/// Reduces the claims to those that succeed.
 ///
-/// Each boat claims one target, the nearest or the first. At once: of all boats that claim the same
-/// target the nearest gets it; the others lose nothing and may claim again at the next look.
-/// Granted claims are ordered by target. In turn: a boat gets its target unless an earlier boat has
-/// claimed it, and claims nothing else. Granted claims are ordered by boat. Ties go to the lower
-/// index.
+/// Each boat claims one target, the nearest or the first. `AtOnce`: of all boats that claim the
+/// same target, the nearest gets it; the others lose nothing and may claim again at the next check.
+/// Granted claims are ordered by target. `InTurn`: a boat gets its target unless an earlier boat
+/// has claimed it, and claims nothing else. Granted claims are ordered by boat. Ties go to the
+/// lower index.
 pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Resolution) {
     claims.sort_unstable_by(|x, y| {
         let wanted = if choice == TagChoice::Nearest {

@@ -17,10 +17,9 @@ pub struct Counts {
     pub tagged: u32,
     /// Times the boat left the field.
     pub out_of_bounds: u32,
-    /// Collisions that involved the boat. A collision between teammates counts twice for their
-    /// team.
+    /// Collisions that involved the boat. A collision between teammates counts twice for the team.
     pub collisions: u32,
-    /// Times the boat's agent was lost. Older recordings use its former name.
+    /// Times the boat's agent was lost. Older recordings use a former name of this field.
     #[serde(alias = "minds_lost")]
     pub agents_lost: u32,
 }

@@ -1,18 +1,18 @@
-//! Directives: constraints of the rules on a boat, enforced by the world or a gateway.
+//! Directives: constraints that the rules impose on a boat, enforced by the world or a gateway.
 
 use super::{Referee, Standing, TaggedBoat};
 use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
-/// The constraint of the rules on one boat.
+/// The constraint that the rules impose on one boat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Directive {
-    /// It follows its mind, up to this fraction of its top speed.
+    /// The boat follows its mind, up to this fraction of its top speed.
     Free {
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// It is tagged and driven straight home at this fraction of its top speed; its mind is
+    /// The boat is tagged and driven straight home at this fraction of its top speed; its mind is
     /// ignored.
     DrivenHome {
         /// The untag place.
@@ -20,7 +20,7 @@ pub enum Directive {
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// It holds and its mind is ignored: out of action, or out of play for good.
+    /// The boat holds and its mind is ignored: it is out of action, or out of play for good.
     Hold,
 }
 

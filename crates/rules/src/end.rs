@@ -5,7 +5,7 @@ use crate::event::Event;
 use primitives::id::TeamId;
 
 impl Referee {
-    /// Ends the game when it is won or the time is up. The highest score wins, even if both teams
+    /// Ends the game if it is won or the time is up. The highest score wins, even if both teams
     /// reach the winning score in one tick; equal scores are a draw.
     pub(super) fn end(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         let best = standing.score.iter().copied().max().unwrap_or(0);

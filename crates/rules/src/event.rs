@@ -109,13 +109,13 @@ pub enum Event {
     WentOn,
     /// The game is over.
     Ended {
-        /// The winning team; `None`: a draw.
+        /// The winning team; `None` means a draw.
         winner: Option<TeamId>,
     },
 }
 
 impl Event {
-    /// The affected boat: the first in a collision, none at the end of a game.
+    /// The affected boat: the first in a collision; none at the end of a game.
     pub fn vehicle(self) -> Option<VehicleId> {
         match self {
             Event::Grabbed { vehicle, .. }
@@ -142,7 +142,7 @@ impl Event {
         }
     }
 
-    /// The second boat: the tagger, or the other in a collision.
+    /// The second boat: the tagger, or the other boat in a collision.
     pub fn other(self) -> Option<VehicleId> {
         match self {
             Event::Tagged {

@@ -17,15 +17,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The content of a field file; [`Field::new`] derives the rest. `E` is `Option<f64>` in a file,
-/// where a number that is estimated may be omitted.
+/// where an estimated number may be omitted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Plan<E = f64> {
     /// The field file's stem.
     #[schemars(skip)]
     pub name: String,
-    /// Geographic position of the local origin. Real boats navigate by it.
+    /// Geographic position of the local origin. Real boats need it to navigate.
     pub datum: LatLon,
-    /// The corner to starboard of the first team's end, seen towards the opponent, [x, y] in m.
+    /// The starboard corner of the first team's end, as seen facing the opponent, [x, y] in m.
     #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)))]
     #[schemars(extend("x-field" = "corner", "default" = [0, 0]))]
     pub corner: Ned,
@@ -72,7 +72,7 @@ pub enum Walls {
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Its position while no boat carries it.
+    /// Its position when no boat carries it.
     pub home: Ned,
 }
 
@@ -86,7 +86,7 @@ pub enum Obstacle {
         /// Radius, m.
         radius_m: f64,
     },
-    /// A polygon without self-crossings.
+    /// A polygon whose sides do not cross.
     Polygon {
         /// At least three corners, in order, in either direction.
         corners: Vec<Ned>,
@@ -94,7 +94,7 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
-    /// Whether it contains a place.
+    /// Whether the obstacle contains a place.
     pub fn contains(&self, at: Ned) -> bool {
         match self {
             Obstacle::Circle { centre, radius_m } => centre.distance(at) < *radius_m,
@@ -102,7 +102,7 @@ impl Obstacle {
         }
     }
 
-    /// The distance to it, m; 0 inside.
+    /// The distance to the obstacle, m; 0 inside.
     pub fn distance(&self, at: Ned) -> f64 {
         match self {
             Obstacle::Circle { centre, radius_m } => (centre.distance(at) - radius_m).max(0.0),
@@ -120,7 +120,8 @@ pub fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
         .zip(corners.iter().copied().cycle().skip(1))
 }
 
-/// Whether a polygon contains a place: a ray from there crosses its outline an odd number of times.
+/// Whether a polygon contains a place: a ray from the place crosses its outline an odd number of
+/// times.
 pub fn is_within(corners: &[Ned], at: Ned) -> bool {
     let crossed = |(a, b): &(Ned, Ned)| {
         (a.east > at.east) != (b.east > at.east)
@@ -162,7 +163,7 @@ pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
         .fold(of_ends, f64::min)
 }
 
-/// Whether two line segments have a point in common.
+/// Whether two line segments have a common point.
 pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
     let c_side = turn(a, b, c);
     let d_side = turn(a, b, d);
@@ -189,7 +190,7 @@ pub fn turn(a: Ned, b: Ned, c: Ned) -> f64 {
 /// A convex region bounded by straight edges. The edges belong to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Zone {
-    /// Outward unit normals, each with the largest scalar product of any inside point with it.
+    /// Outward unit normals, each with the maximum of its scalar product with any point inside.
     edges: Vec<(Ned, f64)>,
     /// The corners, in order.
     pub corners: Vec<Ned>,
@@ -245,7 +246,7 @@ pub struct Field {
     pub scrimmage: [Ned; 2],
 }
 
-/// The columns of the named points, from port to starboard facing the opponent's end.
+/// The columns of the named points, from port to starboard, as seen facing the opponent's end.
 const COLUMNS: [(&str, f64); 5] = [
     ("PP", 0.0),
     ("P", 0.25),
@@ -253,7 +254,7 @@ const COLUMNS: [(&str, f64); 5] = [
     ("S", 0.75),
     ("SS", 1.0),
 ];
-/// The rows of the named points, from one's own end: back, flag, half, mid, centre, and their
+/// The rows of the named points, from the team's own end: back, flag, half, mid, centre, and their
 /// mirror images.
 const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
 
@@ -311,12 +312,12 @@ impl Field {
         (from_corner.dot(self.along), from_corner.dot(self.across))
     }
 
-    /// The middle of the field.
+    /// The centre of the field.
     pub fn middle(&self) -> Ned {
         (self.corners[0] + self.corners[2]).scaled(0.5)
     }
 
-    /// Whether `at` is on the field, boundary excluded.
+    /// Whether `at` is on the field, excluding the boundary.
     #[inline]
     pub fn contains(&self, at: Ned) -> bool {
         let (x, y) = self.along_across(at);
@@ -341,8 +342,8 @@ impl Field {
     }
 
     /// Target of a boat of `team` at `at` on its way to a corner of its own end: the nearer of the
-    /// two points `inset_m` inside both edges. The corners themselves are on the boundary: a boat
-    /// from outside would follow the edge on the wrong side.
+    /// two points `inset_m` inside both edges. The corners themselves are on the boundary, so a
+    /// boat from outside would follow the edge on the wrong side.
     pub fn inside_own_corner(&self, team: TeamId, at: Ned, inset_m: f64) -> Option<Ned> {
         // Clockwise: the field is to starboard of the direction from the first corner to the
         // second.
@@ -363,9 +364,9 @@ impl Field {
         )
     }
 
-    /// The named point of `team`, seen from its own end: a column (`PP P C S SS`, port to
-    /// starboard) and a row (`B` back, `F` flag line, `H` half of its side, `M` between there
-    /// and the centre, `C` centre line, then `MX HX FX BX` on the other side).
+    /// The named point of `team`, as seen from its own end: a column (`PP P C S SS`, port to
+    /// starboard) and a row (`B` back, `F` flag line, `H` half of its side, `M` between `H` and the
+    /// centre, `C` centre line, then `MX HX FX BX` on the other side).
     pub fn point(&self, team: TeamId, name: &str) -> Option<Ned> {
         let row_names = ROWS.iter().enumerate().rev();
         let (column, row) = row_names
@@ -384,7 +385,8 @@ impl Field {
     /// The position `ahead_m` from the team's own end and `from_port_m` from the edge on its port
     /// side.
     pub fn seen_from(&self, team: TeamId, ahead_m: f64, from_port_m: f64) -> Ned {
-        // The first team faces along, so its port side is where `across` is largest.
+        // The first team faces in the direction `along`, so its port side is where `across` is
+        // largest.
         if team.index() == 0 {
             self.at(ahead_m, self.plan.depth_m - from_port_m)
         } else {

@@ -7,10 +7,11 @@ use primitives::id::{FlagId, VehicleId};
 
 impl Referee {
     /// Gives flags to opponents within reach, on request if the rules require it. No boat carries
-    /// two.
+    /// two flags.
     ///
     /// A boat claims the nearest available flag; [`Resolution`] decides between several boats at
-    /// one flag. A flag is available only if it has been home since the last look, except in turn.
+    /// one flag. A flag is available only if it has been home since the last check, except with
+    /// `InTurn`.
     pub(super) fn grab(
         &self,
         standing: &mut Standing,
@@ -56,11 +57,11 @@ impl Referee {
         }
     }
 
-    /// Scores the flags at the capture place and returns them home. A flag grabbed at this look
-    /// counts at the next one at the earliest.
+    /// Scores the flags at the capture place and returns them home. A flag grabbed at this check
+    /// can be captured at the next check at the earliest.
     ///
     /// With `capture_needs_own_flag`, all flags of the carrier's own team must be home after the
-    /// grabs and before the captures of this look.
+    /// grabs and before the captures of this check.
     pub(super) fn capture(
         &self,
         standing: &mut Standing,

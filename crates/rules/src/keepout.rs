@@ -7,7 +7,7 @@ use primitives::id::{TeamId, VehicleId};
 
 impl Referee {
     /// The circle that a boat at `at` must stay out of, if any: centre and radius in m. If several
-    /// flags of its team are home, the nearest one's.
+    /// flags of its team are home, that of the nearest flag.
     pub fn keepout(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Option<(Ned, f64)> {
         let radius_m = self.rules.flag_keepout_m;
         if radius_m <= 0.0 || !standing.vehicles[vehicle.index()].in_play {
@@ -42,7 +42,7 @@ impl Referee {
         }
     }
 
-    /// The homes of those of `team`'s flags that are home.
+    /// The homes of `team`'s flags that are home.
     #[inline]
     fn own_flags_home(&self, standing: &Standing, team: TeamId) -> impl Iterator<Item = Ned> {
         self.field

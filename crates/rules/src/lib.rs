@@ -1,6 +1,6 @@
 //! The rules of the game, and the referee that applies them.
 //!
-//! [`Rules`] are data from `scenarios/rules/*.toml`. Their types declare the keys, as for other
+//! [`Rules`] are data from `scenarios/rules/*.toml`. Their types declare the keys, as in other
 //! scenario files. The [`Referee`] sees positions and time, never physics: the same referee judges
 //! a simulation, a replay and a game on real water.
 
@@ -56,14 +56,14 @@ pub struct Rules {
     /// Maximum distance from the capture place, m; no effect with "own_side".
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub capture_radius_m: f64,
-    /// Minimum distance between the centres of boats without a collision, m.
+    /// Boats whose centres are closer than this collide, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
     /// Contact between boats; walls and obstacles are always solid.
     #[serde(default)]
     #[schemars(extend("default" = "solid"))]
     pub contact: Contact,
-    /// Where a flag must be brought.
+    /// Place to which a flag must be brought.
     #[schemars(extend("default" = "own_flag"))]
     pub capture_at: CaptureAt,
     /// Whether a capture requires the team's own flag to be home.
@@ -75,7 +75,7 @@ pub struct Rules {
     /// Condition for untagging there.
     #[schemars(extend("default" = "entering"))]
     pub untag_on: UntagOn,
-    /// Time between a successful tag and the boat's next tag, s.
+    /// Minimum time from a boat's successful tag to its next tag, s.
     #[schemars(rename = "tag_cooldown_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "tag_cooldown", "default" = 10))]
     pub tag_cooldown: SimTime,
@@ -86,7 +86,7 @@ pub struct Rules {
     #[serde(default)]
     #[schemars(extend("default" = "at_once"))]
     pub resolution: Resolution,
-    /// Which position determines a boat's side, for tags and captures on its own side.
+    /// The position that determines a boat's side, for tags and captures on its own side.
     #[serde(default)]
     #[schemars(extend("default" = "after_move"))]
     pub side_judged: SideJudged,
@@ -94,14 +94,14 @@ pub struct Rules {
     #[serde(default)]
     #[schemars(extend("default" = "automatic"))]
     pub tags_and_grabs: Acting,
-    /// Interval of checks of boundary, tags and collisions, s, a multiple of the tick; 0: every
-    /// tick.
+    /// Interval between checks for boundary crossings, tags and collisions, s, a multiple of the
+    /// tick; 0: every tick.
     #[serde(default)]
     #[schemars(rename = "tag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "tag_look_period", "default" = 0))]
     pub tag_look_period: SimTime,
-    /// Interval of checks of grabs, captures and untagging, s, a multiple of the tick; 0: every
-    /// tick.
+    /// Interval between checks for grabs, captures and untagging, s, a multiple of the tick; 0:
+    /// every tick.
     #[serde(default)]
     #[schemars(rename = "flag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
     #[schemars(extend("x-field" = "flag_look_period", "default" = 0))]
@@ -118,7 +118,7 @@ pub struct Rules {
     /// Maximum speed outside the field, as a fraction of top speed.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub outside_speed_factor: f64,
-    /// What a team learns about other boats. Default: everything, at once.
+    /// A team's information about other boats. Default: everything, at once.
     #[serde(default)]
     #[schemars(with = "Option<Sharing>", !default, extend("x-drawn" = true))]
     pub sharing: Sharing,
@@ -132,15 +132,15 @@ pub struct Rules {
     #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
     #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,
-    /// Time during which one boat of each team is out of action, s; 0: no power play.
+    /// Time for which one boat of each team is out of action, s; 0: no power play.
     #[schemars(rename = "power_play_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "power_play", "default" = 0))]
     pub power_play: SimTime,
 }
 
 impl Rules {
-    /// Distance at which the rules make two boats relevant to each other, m: the reach of `near` in
-    /// [`Referee::advance`].
+    /// Distance within which the rules make two boats relevant to each other, m: the reach of
+    /// `near` in [`Referee::advance`].
     pub fn reach_m(&self) -> f64 {
         self.tag_radius_m.max(self.collision_distance_m)
     }
@@ -167,7 +167,7 @@ impl Points {
     }
 }
 
-/// Where a carrier must come to capture.
+/// The place where a carrier captures a flag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CaptureAt {
@@ -223,22 +223,22 @@ pub enum TagChoice {
 #[serde(rename_all = "snake_case")]
 pub enum Resolution {
     /// Tags, then grabs, then captures, each judged by the state before it. An intruder or flag
-    /// within reach of several boats goes to the nearest. Processing order decides only ties.
+    /// within reach of several boats goes to the nearest boat. Processing order decides only ties.
     #[default]
     AtOnce,
-    /// As in Pyquaticus: grabs, then tags, then captures, each in processing order, judged by what
-    /// earlier boats left.
+    /// As in Pyquaticus: grabs, then tags, then captures, each in processing order and judged by
+    /// the state after earlier boats.
     InTurn,
 }
 
-/// Which position determines a boat's side.
+/// The position that determines a boat's side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SideJudged {
-    /// The current one.
+    /// The current position.
     #[default]
     AfterMove,
-    /// The one before its last move, a physics tick ago, as in Pyquaticus.
+    /// The position before the boat's last move, one physics tick ago, as in Pyquaticus.
     BeforeMove,
 }
 
@@ -249,8 +249,8 @@ pub enum Acting {
     /// Every boat within reach acts.
     #[default]
     Automatic,
-    /// Only boats that request it act. A boat requests while its team's picture shows it within
-    /// reach; a wrong or late picture causes wrong or late requests.
+    /// Only boats that request it act. A boat sends requests while its team's picture shows a
+    /// target within reach; a wrong or late picture causes wrong or late requests.
     OnRequest,
 }
 

@@ -1,6 +1,6 @@
 //! Capture and untag places.
 //!
-//! The referee judges by these functions and agents steer by them. They depend only on the field,
+//! The referee judges by these functions, and agents steer by them. They depend only on the field,
 //! the rules and a position.
 
 use super::{CaptureAt, Rules, SideJudged, UntagAt};
@@ -27,8 +27,8 @@ impl Rules {
         }
     }
 
-    /// Target of a carrier of `team` at `at`: the nearest capture place or, if the whole own side
-    /// counts, the nearest own flag. None on a field without flags or corners of that team.
+    /// Target of a carrier of `team` at `at`: the nearest capture place or, if all of its own side
+    /// counts, its nearest own flag. None on a field without flags or corners of that team.
     pub fn capture_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.capture_at {
             CaptureAt::OwnFlag | CaptureAt::OwnSide => field.nearest_own_flag(team, at),
@@ -83,7 +83,7 @@ fn is_near_own_corner(field: &Field, team: TeamId, at: Ned, radius_m: f64) -> bo
 }
 
 /// Inset from both edges for boats that must come within `radius_m` of a corner, m. Half the radius
-/// is 10 m in the 2026 competition, and leaves 0.3 of the radius to spare.
+/// is 10 m in the 2026 competition, and leaves a margin of 0.3 of the radius.
 fn corner_inset_m(radius_m: f64) -> f64 {
     0.5 * radius_m
 }

@@ -1,4 +1,4 @@
-//! Power play: each team is one boat short for a while, never two teams at once.
+//! Power play: each team is one boat short for some time, never two teams at once.
 
 use super::{Referee, Standing};
 use crate::event::Event;
@@ -9,7 +9,7 @@ use primitives::time::SimTime;
 impl Referee {
     /// Draws one boat of each team and its time out of action. All team orders and all positions of
     /// the windows that fit into the game without overlap are equally likely. In a game too short
-    /// for all windows, they divide its time between them.
+    /// for all windows, they share its duration.
     pub(super) fn draw_power_plays(&self, standing: &mut Standing, stream: &mut Stream) {
         if self.rules.power_play <= SimTime::ZERO {
             return;
@@ -40,7 +40,7 @@ impl Referee {
         }
     }
 
-    /// Disables and enables boats by the windows drawn at the start.
+    /// Disables and enables boats according to the windows drawn at the start.
     pub(super) fn switch_power_plays(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         if self.rules.power_play <= SimTime::ZERO {
             return;

@@ -1,4 +1,4 @@
-//! The referee: looks at all boats once per tick and reports events.
+//! The referee: checks all boats once per tick and reports events.
 
 use super::claim::Claim;
 use super::{Resolution, Rules, Standing};
@@ -10,7 +10,7 @@ use primitives::near::Pair;
 use primitives::stream::Stream;
 use primitives::time::SimTime;
 
-/// The constant referee of a game. [`Standing`] changes.
+/// The constant referee of a game. Only [`Standing`] changes.
 #[derive(Clone, Debug)]
 pub struct Referee {
     /// The rules of the game.
@@ -30,7 +30,7 @@ pub struct Asks {
     pub grab: bool,
 }
 
-/// Scratch memory, reused at every look; it carries no state between looks.
+/// Scratch memory, reused at every check; it carries no state between checks.
 #[derive(Clone, Debug, Default)]
 pub struct Notes {
     pub(super) claims: Vec<Claim>,
@@ -45,27 +45,28 @@ pub struct Look<'a> {
     /// Requests by vehicle index, if the rules require them:
     /// [`Acting::OnRequest`](super::Acting::OnRequest).
     pub asks: &'a [Asks],
-    /// At least all pairs within [`Rules::reach_m`], in the order of [`primitives::near::Near`].
+    /// All pairs within [`Rules::reach_m`], possibly more, in the order of
+    /// [`primitives::near::Near`].
     pub near: &'a [Pair],
-    /// Simulated time, later than the last look.
+    /// Simulated time, later than at the last check.
     pub now: SimTime,
 }
 
 impl Referee {
-    /// The standing before the start. Only power plays draw from `stream`.
+    /// The standing before the start. Only power plays use `stream`.
     pub fn start(&self, stream: &mut Stream) -> Standing {
         let mut standing = Standing::new(self.team_of.len(), self.field.flags.len(), self.teams());
         self.draw_power_plays(&mut standing, stream);
         standing
     }
 
-    /// Looks at all boats and appends events.
+    /// Checks all boats and appends events.
     ///
     /// The order of the list below is the order of resolution. Every phase is judged by the
-    /// standing at its start, whatever the order of the boats: mirrored teams get mirrored results.
-    /// Results of this look take effect from the next one on: a flag brought home cannot be grabbed
-    /// yet, a grabbed flag cannot be captured yet, a tagged boat cannot be untagged yet.
-    /// [`Resolution::InTurn`] uses another order, for comparison with Pyquaticus.
+    /// standing at its start, whatever the order of the boats, so mirrored teams get mirrored
+    /// results. Results of this check take effect at the next one: a flag brought home cannot be
+    /// grabbed yet, a grabbed flag cannot be captured yet, a tagged boat cannot be untagged yet.
+    /// [`Resolution::InTurn`] uses a different order, for comparison with Pyquaticus.
     ///
     /// Nothing happens after the end of the game.
     pub fn advance(
@@ -84,15 +85,16 @@ impl Referee {
         let flags = is_due(look.now, self.rules.flag_look_period);
         self.switch_power_plays(standing, events);
         if tags {
-            // First: a boat that has left is out of the taggers' reach, but still loses its flag.
+            // First, because a boat that has left is out of the taggers' reach but must still lose
+            // its flag.
             self.watch_boundary(standing, at, events);
         }
         if flags && self.rules.resolution == Resolution::InTurn {
             self.grab(standing, notes, look, events);
         }
         if tags {
-            // Before grabs: a boat tagged at the flag does not grab it. In turn, as in Pyquaticus,
-            // boats listed first tag more often; that order is for comparison only.
+            // Before grabs, because a boat tagged at the flag must not grab it. With `InTurn`, as
+            // in Pyquaticus, boats listed first tag more often; that order is only for comparison.
             self.tag(standing, notes, look, events);
         }
         if flags && self.rules.resolution == Resolution::AtOnce {
@@ -122,7 +124,7 @@ impl Referee {
     }
 }
 
-/// Whether a periodic look is due; always, with a period of 0.
+/// Whether a periodic check is due; always, with a period of 0.
 fn is_due(now: SimTime, period: SimTime) -> bool {
     period <= SimTime::ZERO || now.0 % period.0 == 0
 }

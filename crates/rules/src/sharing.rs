@@ -1,9 +1,9 @@
-//! How a team learns about other boats.
+//! How a team gets information about other boats.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a team learns about other boats.
+/// A team's information about other boats.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sharing {
     /// Range at which a boat is seen, m. Default: unlimited.
@@ -23,10 +23,10 @@ pub struct Sharing {
     /// Standard deviation of velocity, per axis, m/s.
     #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     pub velocity_noise_m_s: f64,
-    /// Fraction of lost reports.
+    /// Fraction of reports lost.
     #[schemars(range(min = 0, max = 1), extend("default" = 0))]
     pub loss: f64,
-    /// A contact without reports for longer than this is forgotten, s.
+    /// Time without reports after which a contact is forgotten, s.
     #[schemars(range(min = 0, max = 86400), extend("default" = 10))]
     pub memory_s: f64,
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// The referee's complete state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Standing {
-    /// Time of the referee's last look.
+    /// Time of the referee's last check.
     pub now: SimTime,
     /// Boats, by vehicle index.
     pub vehicles: Vec<VehicleStanding>,
@@ -18,7 +18,7 @@ pub struct Standing {
     pub score: Vec<u32>,
     /// Pairs of boats within the collision distance, lower index first, sorted.
     pub touching: Vec<(VehicleId, VehicleId)>,
-    /// Start and end of its power play, by vehicle index.
+    /// Start and end of each boat's power play, by vehicle index.
     pub disabled: Vec<(SimTime, SimTime)>,
     /// Whether the game is over.
     pub over: bool,
@@ -27,7 +27,7 @@ pub struct Standing {
 /// The standing of one boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleStanding {
-    /// Whether it takes part: a quarantined boat is only an obstacle.
+    /// Whether the boat takes part: a quarantined boat is only an obstacle.
     pub in_play: bool,
     /// Whether it is tagged.
     pub tagged: bool,
@@ -39,9 +39,9 @@ pub struct VehicleStanding {
     pub tag_ready: SimTime,
     /// Whether it is outside the field.
     pub outside: bool,
-    /// Whether it was at its untag place, and on the field, at the last look.
+    /// Whether the boat was at its untag place, and on the field, at the last check.
     pub at_home: bool,
-    /// Whether it was in its own flag's keep-out circle at the last look.
+    /// Whether the boat was in its own flag's keep-out circle at the last check.
     pub in_keepout: bool,
     /// Whether it is out of action by power play.
     pub disabled: bool,
@@ -50,7 +50,7 @@ pub struct VehicleStanding {
 /// The standing of one flag.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlagStanding {
-    /// Its carrier; none if it is home.
+    /// Its carrier; `None` if the flag is home.
     pub carrier: Option<VehicleId>,
     /// Time of its last grab or return.
     pub moved_at: SimTime,

@@ -7,12 +7,12 @@ use primitives::id::VehicleId;
 use primitives::near::Pair;
 
 impl Referee {
-    /// Tags intruders as soon as possible: automatically, or on request once the boat believes it
-    /// is within reach.
+    /// Tags intruders as soon as possible: automatically, or on request once the boat believes
+    /// itself within reach.
     ///
     /// Each tagger claims one intruder; [`super::Resolution`] decides between several taggers of
-    /// the same one. Only the successful tagger gets the points and the cooldown: a failed or late
-    /// tag costs nothing.
+    /// the same intruder. Only the successful tagger gets the points and the cooldown: a failed or
+    /// late tag costs nothing.
     pub(super) fn tag(
         &self,
         standing: &mut Standing,

@@ -18,13 +18,13 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
-    /// Those of Pyquaticus.
+    /// The actions of Pyquaticus.
     Pyquaticus,
     /// A turn and a speed.
     Continuous,
     /// The values of a variable of a strategy.
     Options,
-    /// Those of a table.
+    /// The actions of a table.
     #[serde(untagged)]
     Table(ActionTable),
 }
@@ -98,7 +98,7 @@ pub struct ActionTable {
 /// Maximum number of actions of a table.
 const ACTIONS_MAX: usize = 64;
 
-// Its numbers are finite.
+// The numbers are finite.
 impl Eq for ActionTable {}
 
 impl ActionTable {
@@ -158,12 +158,13 @@ pub(crate) struct TableAction(
 pub enum Action {
     /// The index of one of several actions.
     Discrete(usize),
-    /// Numbers from -1 to 1; values beyond are clamped.
+    /// Numbers from -1 to 1; values outside are clamped.
     Continuous([f32; 2]),
 }
 
 impl Action {
-    /// The discrete action that these logits' probabilities give for a uniform number from 0 to 1.
+    /// The discrete action that the probabilities of these logits give for a uniform number from 0
+    /// to 1.
     pub fn drawn(logits: &[f32], unit: f64) -> Action {
         let mut below = 0.0;
         let all = probabilities(logits);
@@ -171,7 +172,7 @@ impl Action {
             below += f64::from(*probability);
             unit < below
         });
-        // Rounding can leave the sum just below 1.
+        // Rounding may leave the sum just below 1.
         drawn.map_or_else(|| Action::likeliest(logits), Action::Discrete)
     }
 
@@ -184,7 +185,7 @@ impl Action {
 }
 
 impl ActionSpace {
-    /// A discrete action in words: "50 % speed, 45° to port".
+    /// A discrete action as a string: "50 % speed, 45° to port".
     pub fn words(self, action: usize) -> String {
         if self == ActionSpace::Options {
             return format!("option {action}");
@@ -215,11 +216,11 @@ pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     parts.iter().map(|part| (part / sum) as f32).collect()
 }
 
-/// The request that an action makes to a boat.
+/// The set-point that an action requests from a boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SetPoint {
-    /// Desired turn, rad clockwise, -pi to pi: half a turn to either side is two different
-    /// requests.
+    /// Desired turn, rad clockwise, -pi to pi: half a turn to port and half a turn to starboard are
+    /// different requests.
     pub turn_rad: f64,
     /// Desired course after this turn from the heading at the decision, rad clockwise from north.
     pub course_rad: f64,
@@ -233,8 +234,8 @@ const TURNS: usize = 8;
 const SPEEDS: [f64; 2] = [1.0, 0.5];
 
 impl ActionSpace {
-    /// Number of discrete actions; none for continuous actions, and for options, which depend on a
-    /// strategy.
+    /// Number of discrete actions; none for continuous actions, and for options, since their number
+    /// depends on a strategy.
     pub fn count(self) -> Option<usize> {
         match self {
             ActionSpace::Pyquaticus => Some(SPEEDS.len() * TURNS + 1),
@@ -243,7 +244,7 @@ impl ActionSpace {
         }
     }
 
-    /// Number of a policy's outputs: a logit for each discrete action, or a number for each
+    /// Number of a policy's outputs: one logit for each discrete action, or one number for each
     /// dimension; a minimum for options.
     pub fn outputs(self) -> usize {
         self.count().unwrap_or(2)
@@ -254,7 +255,7 @@ impl ActionSpace {
         self != ActionSpace::Continuous
     }
 
-    /// The action nearest to this turn, rad clockwise, and this speed, the inverse of
+    /// The action nearest to this turn (rad clockwise) and speed, the inverse of
     /// [`ActionSpace::set_point`]; none for options.
     pub fn nearest(self, turn_rad: f64, speed_m_s: f64, speed_max_m_s: f64) -> Option<Action> {
         let share = (speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
@@ -279,8 +280,8 @@ impl ActionSpace {
             .map(Action::Discrete)
     }
 
-    /// The turn and speed of an action for a boat with this heading and top speed. Actions of
-    /// another space, non-finite ones and options are a stop.
+    /// The turn and speed of an action for a boat with this heading and top speed. Actions of a
+    /// different space, non-finite actions and options mean a stop.
     pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
         let (turn_rad, share) = match (self, action) {
             (ActionSpace::Pyquaticus, Action::Discrete(i)) if i < SPEEDS.len() * TURNS => (

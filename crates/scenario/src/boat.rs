@@ -1,11 +1,11 @@
 //! A kind of boat: its hull, thrusters and front seat.
 //!
-//! Everything is SI, in the boat's own frame with its origin midships (CO): x ahead, y to
+//! Everything is SI, in the boat's own frame with its origin amidships (CO): x ahead, y to
 //! starboard, yaw clockwise. `sim::hull` contains the equation with these numbers.
 //!
-//! These types also declare the keys of boat files. For a key in another unit, `rename` sets the
-//! key's name, the description gives that unit, and `x-field` names the field. A number that is
-//! estimated where a file omits it has the type `E`: `Option<f64>` in a file, `f64` once checked.
+//! These types also declare the keys of boat files. For a key in a different unit, `rename` sets
+//! the key's name, the description gives the unit, and `x-field` names the field. A number that is
+//! estimated if a file omits it has the type `E`: `Option<f64>` in a file, `f64` once checked.
 
 use crate::sensor::Sensors;
 use schemars::JsonSchema;
@@ -57,12 +57,12 @@ pub enum Drive {
         autopilot: Autopilot,
     },
     /// The point boat of MOOS (uSimMarine under pMarinePID), for parity with other training
-    /// environments. Of the sea, only the current affects it.
+    /// environments. The sea affects it only through the current.
     Kinematic(Kinematic),
 }
 
 impl Boat {
-    /// The highest speed its front seat accepts, m/s.
+    /// The maximum speed that its front seat accepts, m/s.
     pub fn speed_max_m_s(&self) -> f64 {
         match &self.drive {
             Drive::Thrusters { autopilot, .. } => autopilot.speed_max_m_s,
@@ -169,10 +169,10 @@ pub struct Hull<E = f64> {
     /// Mass including payload, kg.
     #[schemars(range(min = 0.1, max = 1000000))]
     pub mass_kg: f64,
-    /// Moment of inertia about midships, kg m². Default: m (L/4)² + m x_g².
+    /// Moment of inertia about amidships, kg m². Default: m (L/4)² + m x_g².
     #[schemars(range(min = 0.0001, max = 1000000000))]
     pub yaw_inertia_kg_m2: E,
-    /// Centre of gravity ahead of midships, m, within the hull.
+    /// Centre of gravity ahead of amidships, m, within the hull.
     #[schemars(range(min = -50, max = 50), extend("default" = 0))]
     pub x_g_m: f64,
     /// Added mass in surge A11, kg. Default: 2.7 ρ (m/ρ)^(5/3) / L², ρ = 1000 (Söding).
@@ -187,8 +187,8 @@ pub struct Hull<E = f64> {
     /// Added sway-yaw coupling A26, kg m.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub added_sway_yaw_kg_m: f64,
-    /// Linear surge resistance -X_u, kg/s. Default: such that both thrusters full
-    /// ahead give the autopilot's `speed_max_m_s` (at least 0).
+    /// Linear surge resistance -X_u, kg/s. Default: both thrusters full ahead give the autopilot's
+    /// `speed_max_m_s` (at least 0).
     #[schemars(range(min = 0, max = 1000000))]
     pub surge_linear_kg_s: E,
     /// Quadratic surge resistance -X_|u|u, kg/m.
@@ -258,16 +258,16 @@ pub struct Flaws {
     /// Delay of commands to the thrusters, s.
     #[schemars(range(min = 0, max = 5), extend("default" = 0))]
     pub latency_s: f64,
-    /// The thrusters stop after this long without a new order, s. Default: never.
+    /// Time without a new order after which the thrusters stop, s. Default: never.
     #[schemars(range(min = 0.1, max = 3600))]
     pub watchdog_s: Option<f64>,
-    /// A battery whose voltage falls. Default: a constant one.
+    /// A battery whose voltage falls. Default: constant voltage.
     pub battery: Option<Battery>,
     /// Loss of thrust in waves. Default: none.
     pub ventilation: Option<Ventilation>,
 }
 
-/// Both factors on thrust under their names in files.
+/// Both factors on thrust, under their names in files.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "the schema of two keys")]
 struct Gains {
@@ -294,7 +294,7 @@ impl Default for Flaws {
     }
 }
 
-/// A battery whose voltage, and thereby the thrust, falls with its charge.
+/// A battery whose voltage, and therefore thrust, falls with its charge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Battery {
     /// Energy when full, J.
@@ -332,7 +332,7 @@ pub enum ThrustCurve {
     /// A measured table; the setting is the fraction of full ahead, −1 to 1, and the lag acts on
     /// it.
     Table {
-        /// (setting, thrust in N), both rising strictly, with (0, 0) among them.
+        /// (setting, thrust in N), both strictly ascending, including (0, 0).
         points: Vec<(f64, f64)>,
     },
 }

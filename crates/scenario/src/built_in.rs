@@ -7,14 +7,14 @@ use std::sync::OnceLock;
 /// Returns the content of a built-in file by folder and name, as in `seas/gale.toml`.
 pub type BuiltIn = fn(&str) -> Option<&'static [u8]>;
 
-/// Called with the path of each file read from disk whose built-in namesake differs.
+/// Called with the path of each file read from disk that differs from its built-in namesake.
 pub type OnOverride = fn(&Path);
 
 static BUILT_IN: OnceLock<(BuiltIn, OnOverride)> = OnceLock::new();
 
 /// Sets the built-in files of this process. Later calls have no effect.
 pub fn set_built_in(files: BuiltIn, on_override: OnOverride) {
-    // Later callers have the same files: a process has one program.
+    // Later callers pass the same files: a process has one program.
     let _ = BUILT_IN.set((files, on_override));
 }
 
@@ -28,8 +28,8 @@ pub(super) fn note_override(path: &Path, bytes: &[u8], built_in: &[u8]) {
 /// The built-in replacement for a missing file in a folder of `scenarios`, such as
 /// `scenarios/seas/gale.toml`, however the path is written.
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
-    // A path typed within `scenarios` lacks that folder's name. Without a working folder, there is
-    // only what was typed.
+    // A path typed within `scenarios` lacks that folder's name. Without a working folder, only the
+    // typed path is known.
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut parts = vec![];
     for component in whole.components() {
@@ -47,8 +47,8 @@ pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     }
 }
 
-/// How a command line names a scenario file: by its name if commands find it by that, in
-/// `scenarios` here, in a parent folder, or built in; otherwise by its path, quoted for a shell.
+/// The argument for a scenario file on a command line: its name if commands find it in `scenarios`
+/// here, in a parent folder or among the built-in files; otherwise its path, quoted for a shell.
 pub fn argument_for(path: &Path) -> String {
     let whole = std::path::absolute(tidied(path)).unwrap_or_else(|_| path.to_owned());
     let parts: Vec<_> = whole.iter().collect();

@@ -25,7 +25,8 @@ impl Diagnostics {
         self.count(at, message, |sources| !sources.is_broken_line(at));
     }
 
-    /// Reports a problem that broken syntax in the file may have caused, unless there is some.
+    /// Reports a problem that broken syntax in the file may have caused, unless there is broken
+    /// syntax.
     pub(super) fn note_if_intact(&self, at: usize, message: impl Into<String>) {
         self.count(at, message, |sources| !sources.is_broken_file(at));
     }
@@ -60,7 +61,7 @@ impl Diagnostics {
         }
     }
 
-    /// The number of faults so far: checks that combine values run only if it has not grown.
+    /// The number of faults so far; checks that combine values run only if it has not grown.
     pub(super) fn faults(&self) -> usize {
         self.faults.get()
     }
@@ -71,7 +72,7 @@ impl Diagnostics {
     }
 }
 
-/// The keys in a path, the last one first, without the indices of lists.
+/// The keys in a path, last key first, without the indices of lists.
 pub(super) fn keys_of(path: &str) -> impl Iterator<Item = &str> {
     path.rsplit('.')
         .filter(|part| part.parse::<usize>().is_err())
@@ -79,7 +80,7 @@ pub(super) fn keys_of(path: &str) -> impl Iterator<Item = &str> {
 
 /// The pattern of names, in a schema.
 pub(super) const NAME_PATTERN: &str = "^[a-z0-9_]{1,40}$";
-/// The same pattern in words.
+/// The same pattern in plain language.
 pub(super) const NAME_EXPECTED: &str = "1 to 40 characters from a-z, 0-9 and _";
 
 /// Whether this is a valid name of a vehicle, team or rival.

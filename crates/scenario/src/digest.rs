@@ -4,7 +4,7 @@ use super::Scenario;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The digest of a plan, from its file's meaning and the content of its games' files: hex.
+/// The digest of a plan, from its file's meaning and the content of its games' files, in hex.
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
     let contents = files
         .iter()
@@ -15,11 +15,11 @@ pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
 }
 
 impl Scenario {
-    /// The digest of the games of all seeds of this scenario with this version of Squall,
-    /// independent of file locations: hex.
+    /// The digest of the games for all seeds of this scenario with this version of Squall,
+    /// independent of file locations, in hex.
     ///
     /// # Panics
-    /// If it cannot be serialised as JSON: maps with keys that are not strings.
+    /// If the scenario cannot be serialised as JSON, as with map keys that are not strings.
     pub fn digest(&self) -> String {
         let files = self.recipe.iter().flat_map(|recipe| &recipe.files);
         let texts = files.map(|(path, text)| (path.clone(), text.as_bytes().into()));

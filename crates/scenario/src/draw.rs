@@ -1,8 +1,8 @@
 //! Randomised numbers: distributions in place of numbers in a file, drawn for every game.
 //!
 //! Reading a file replaces each distribution with a number, so that the rest of a scenario contains
-//! only numbers. Files with distributions are checked at both ends of each, so that no game fails
-//! in the middle of a campaign.
+//! only numbers. Files with distributions are checked at both ends of each distribution, so that no
+//! game fails in the middle of a campaign.
 
 use super::loader::{Basis, Loader};
 use super::overrides::Overrides;
@@ -11,7 +11,7 @@ use primitives::stream::Stream;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Normal and log-normal numbers are redrawn until they lie within this many standard deviations.
+/// Number of standard deviations within which normal and log-normal numbers are redrawn to lie.
 const WITHIN_SIGMA: f64 = 3.0;
 
 /// A number drawn for a game.
@@ -24,7 +24,7 @@ pub struct Drawn {
     pub value: f64,
 }
 
-/// The data for drawing a game again with another seed.
+/// The data for redrawing a game with a different seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
     pub(super) game: PathBuf,
@@ -33,7 +33,7 @@ pub struct Recipe {
     pub(super) files: Vec<(PathBuf, String)>,
     #[serde(skip)]
     pub(super) basis: Basis,
-    /// The seed of the present numbers.
+    /// The seed of the current numbers.
     pub(super) seed: Option<u64>,
 }
 
@@ -57,7 +57,7 @@ pub(super) struct Owner<'a> {
     pub(super) path_from: usize,
 }
 
-/// The kind of distribution that a table is intended to be, if any.
+/// The kind of distribution that a table is meant to be, if any.
 pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
     ["uniform", "normal", "log_normal", "choice"]
         .into_iter()
@@ -100,7 +100,7 @@ pub(super) fn draw(
     })
 }
 
-/// The number drawn from a distribution with this stream; none if it is invalid.
+/// The number drawn from a distribution with this stream; `None` if the distribution is invalid.
 fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
     let kind = distribution_kind(table)?;
     let finite = |node: &Node| node.as_number().filter(|number| number.is_finite());

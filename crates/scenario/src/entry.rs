@@ -1,11 +1,11 @@
-//! Strategies without a file: those that play a competition entry.
+//! Strategies without a file: those that run a competition entry.
 
 use std::path::{Path, PathBuf};
 
 /// The extension of the path of such a strategy: `FOLDER.host` for the entry in `FOLDER`.
 const HOST: &str = "host";
 
-/// The path of the strategy that plays the entry in a folder, or the one with this `solution.py`.
+/// The path of the strategy that runs the entry in a folder, or the entry with this `solution.py`.
 ///
 /// # Errors
 /// If there is no such folder or file.
@@ -22,18 +22,18 @@ pub fn strategy_path(entry: &str) -> Result<PathBuf, String> {
             "there is no solution.py in {entry}, expected the folder of an entry"
         ));
     }
-    // Appended, because a folder's own name may contain a point.
+    // Append it, because a folder's own name may contain a dot.
     let mut path = folder.components().collect::<PathBuf>().into_os_string();
     path.push(format!(".{HOST}"));
     Ok(path.into())
 }
 
-/// Whether a path is one of [`strategy_path`].
+/// Whether a path was made by [`strategy_path`].
 pub fn is_strategy_path(path: &Path) -> bool {
     path.extension().is_some_and(|end| end == HOST) && path.with_extension("").is_dir()
 }
 
-/// The text of such a strategy. `None` for other paths.
+/// The content of such a strategy; `None` for other paths.
 pub(super) fn strategy(path: &Path) -> Option<String> {
     let folder = path.file_stem().filter(|_| is_strategy_path(path))?;
     let folder = serde_json::Value::from(folder.to_string_lossy());

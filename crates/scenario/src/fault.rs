@@ -1,8 +1,8 @@
 //! Faults of boats during a game, at a fixed time or repeatedly.
 //!
-//! They belong to the game and are seeded like everything in it. Spontaneous failures, such as a
-//! receiver that freezes or a link that loses messages in bursts, are defined with the sensor or
-//! the link.
+//! They belong to the game and depend on its seed like everything in it. Spontaneous failures, such
+//! as a receiver that freezes or a link that loses messages in bursts, are defined with the sensor
+//! or the link.
 
 use primitives::id::VehicleId;
 use primitives::reseed::Seeds;
@@ -15,10 +15,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FaultKind {
-    /// The agent is lost: the boat holds, reports nothing and accepts no order. Afterwards the
+    /// The agent is lost: the boat holds, reports nothing and accepts no orders. Afterwards the
     /// agent restarts without its memory.
     AgentLost,
-    /// Orders do not reach the boat, nor its reports the team. Its orders expire.
+    /// Orders do not reach the boat, nor do its reports reach the team. Its orders expire.
     LinkLost,
     /// The receiver repeats the last fix with new times.
     GpsFrozen,
@@ -49,7 +49,7 @@ pub struct Fault {
     /// Start, s.
     #[schemars(range(min = 0, max = 86400))]
     pub at_s: Option<f64>,
-    /// Instead of `at_s`: mean time to the next fault, exponentially distributed, s.
+    /// Instead of `at_s`: mean of the exponentially distributed time to the next fault, s.
     #[schemars(range(min = 0.1, max = 1000000))]
     pub every_s: Option<f64>,
     /// Duration, s. Default: to the end of the game.
@@ -96,7 +96,7 @@ impl FaultSpan {
     }
 }
 
-/// The faults of one vehicle in the game of `seeds` that begin before `end`, by start.
+/// The faults of one vehicle in the game with `seeds` that begin before `end`, sorted by start.
 pub fn fault_spans(
     faults: &[Fault],
     (vehicle, name): (VehicleId, &str),
@@ -114,7 +114,7 @@ pub fn fault_spans(
         let lasts = fault.for_s.map_or(end, SimTime::from_s);
         let wait = |stream: &mut Stream| {
             let mean_s = fault.every_s?;
-            // With a unit of 0 the wait would be infinite.
+            // With a unit of 0, the wait would be infinite.
             Some(SimTime::from_s(
                 (-mean_s * libm::log1p(-stream.unit())).min(1e7),
             ))
@@ -124,8 +124,8 @@ pub fn fault_spans(
         while let Some(mut from) = next.filter(|from| *from < end) {
             while let Some((after, seed)) = later.next_if(|(after, _)| *after < from) {
                 drawn = stream(*seed);
-                // Exponential waits have no memory: the rest of a wait is distributed like a new
-                // one.
+                // Exponential waits have no memory: the rest of a wait has the same distribution as
+                // a new wait.
                 from = wait(&mut drawn).map_or(from, |wait| over.max(*after) + wait);
             }
             if from >= end {
@@ -140,7 +140,7 @@ pub fn fault_spans(
                 direction_rad: std::f64::consts::TAU * drawn.unit(),
                 offset_rad: fault.offset_deg.unwrap_or(0.0).to_radians(),
             });
-            // A minimum wait, so that even faults of zero duration reach the end of the game.
+            // A minimum wait, so that even with faults of zero duration the game ends.
             next = wait(&mut drawn).map(|wait| over + wait.max(SimTime(1_000_000)));
         }
     }
@@ -213,7 +213,8 @@ mod tests {
             )
         };
         let count: usize = (0..100).map(|seed| of(0, "a", seed).len()).sum();
-        // 3600 s with one every 60 s, over 100 games: 6000, with a standard deviation of about 65.
+        // 3600 s with one fault every 60 s, over 100 games: 6000, with a standard deviation of
+        // about 65.
         assert!((5700..6300).contains(&count), "{count}");
         assert_ne!(of(0, "a", 1)[0].from, of(1, "b", 1)[0].from);
         assert_ne!(of(0, "a", 1)[0].from, of(0, "a", 2)[0].from);
@@ -253,14 +254,14 @@ mod tests {
             counts[0] += within(1800.0, 1860.0);
             counts[1] += within(2800.0, 2860.0);
         }
-        // One every 60 s, 200 times, with a standard deviation of about 8 if the games are
+        // One fault every 60 s, 200 times, with a standard deviation of about 8 if the games are
         // independent.
         assert!((160..240).contains(&counts[1]), "{counts:?}");
         // All share the past of `first`, whose last span ends earlier.
         let last = first.iter().rfind(|span| span.from <= half);
         let last = last.expect("there is one");
         assert!(last.to < half, "the seed of this test leaves no span open");
-        // Starting without a fault, a minute has 60/50 waits, less the duration of the spans: 1.03
+        // Starting without a fault, a minute has 60/50 waits, minus the duration of the spans: 1.03
         // on average.
         assert!((165..245).contains(&counts[0]), "{counts:?}");
     }

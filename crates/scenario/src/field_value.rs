@@ -1,8 +1,8 @@
-//! Converts keys of files and their units to fields of types, in SI.
+//! Converts keys and units of files to fields of types, in SI.
 //!
-//! A key with an `x-field` is stored in a field with another name: `"gain.0"` is the first entry of
-//! the list `gain`. Its unit is converted, seconds become a time where the field has no unit, and
-//! `[x, y]` becomes a position.
+//! A key with an `x-field` is stored in a field with a different name: `"gain.0"` is the first
+//! entry of the list `gain`. Its unit is converted, seconds become a time if the field has no unit,
+//! and `[x, y]` becomes a position.
 
 use super::schema::properties;
 use super::unit::Unit;
@@ -10,7 +10,7 @@ use primitives::frame::Ned;
 use primitives::time::SimTime;
 use serde_json::{Map, Value, json};
 
-/// The mark of a key whose field has another name or unit.
+/// The mark of a key whose field has a different name or unit.
 const FIELD: &str = "x-field";
 
 /// Converts a table's values by key to values by field.

@@ -1,4 +1,4 @@
-//! The files that scenarios are read from: on disk, each read once, or stored copies.
+//! The files from which scenarios are read: on disk, each read once, or stored copies.
 
 use super::built_in::{built_in, note_override};
 use super::entry;
@@ -8,7 +8,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The files that scenarios are read from, with built-in files in place of missing ones. Each file
+/// The files from which scenarios are read, with built-in files in place of missing ones. Each file
 /// is read only once, for consistency.
 #[derive(Debug, Default)]
 pub struct Files {
@@ -34,7 +34,7 @@ impl Read {
 }
 
 impl Files {
-    /// Only these files, without access to the disk.
+    /// Uses only these files, without access to the disk.
     pub fn kept(files: Vec<(PathBuf, Vec<u8>)>) -> Files {
         let mut read = Read::default();
         files
@@ -46,7 +46,7 @@ impl Files {
         }
     }
 
-    /// Whether these are stored copies, which may be another process's.
+    /// Whether these are stored copies, which may come from a different process.
     pub(super) fn is_stored(&self) -> bool {
         self.is_complete
     }
@@ -74,7 +74,7 @@ impl Files {
                 bytes.into()
             }
             // A file on disk always wins, and names work in any folder. Unpacking the built-in
-            // files into a user's folder would have left outdated copies behind.
+            // files into a user's folder would leave outdated copies behind.
             (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
             (Err(error), None) => match entry::strategy(path) {
                 Some(text) => text.into_bytes().into(),

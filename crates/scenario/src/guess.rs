@@ -1,7 +1,7 @@
 //! Suggestions for unknown names.
 
-/// The most similar of `choices`: at most two edits away from `name`, ignoring case, or else with
-/// most of its words.
+/// The most similar of `choices`: at most two edits away from `name`, ignoring case, or else the
+/// one that shares most of its words.
 pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
     let far = name.len().min(5) / 2;
     let name = name.to_lowercase();
@@ -13,7 +13,7 @@ pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
     let shared = |choice: &&'a str| {
         let shared = choice.split('_').filter(|word| words.contains(word));
         let shared: Vec<&str> = shared.collect();
-        // Units alone are no similarity.
+        // A common unit alone is not a similarity.
         let is_near = 2 * shared.len() > words.len().max(choice.split('_').count());
         (is_near && shared.iter().any(|word| word.len() > 2)).then_some((shared.len(), *choice))
     };
@@ -22,7 +22,7 @@ pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
         .map(|(_, choice)| choice)
 }
 
-/// The suggestion as the end of a message: ` (did you mean seed?)`; or an empty text.
+/// The suggestion as the end of a message: ` (did you mean seed?)`; empty without a suggestion.
 pub fn did_you_mean(name: &str, choices: &[&str]) -> String {
     nearest(name, choices)
         .map(|guess| format!(" (did you mean {guess}?)"))

@@ -16,8 +16,8 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-/// The checked form of a kind of scenario file, implemented by the crate that uses it; for the
-/// files of a game in `check`.
+/// The checked form of a kind of scenario file, implemented by the crate that uses it, or in
+/// `check` for the files of a game.
 pub trait ScenarioFile: Clone + Send + Sync + 'static {
     /// The keys of the file; `schema.rs` describes their declaration.
     type Keys: DeserializeOwned + JsonSchema;
@@ -29,11 +29,11 @@ pub trait ScenarioFile: Clone + Send + Sync + 'static {
     /// Converts a file that satisfies its schema; `None` if there are faults, which are reported.
     fn check(document: &Document<Self::Keys>) -> Option<Self>;
 
-    /// Reads and checks the file at `path`, its bases and the files it refers to. Distributions are
-    /// drawn with seed 1.
+    /// Reads and checks the file at `path`, its bases and referenced files. Distributions are drawn
+    /// with seed 1.
     ///
     /// # Errors
-    /// All faults of any of them, by file, line and column.
+    /// All faults in these files, by file, line and column.
     fn load(path: &Path) -> Result<Self, Problems> {
         let (value, _) = draw_file::<Self>(path, 1)?;
         value.check_games().map(|()| value)
@@ -42,7 +42,7 @@ pub trait ScenarioFile: Clone + Send + Sync + 'static {
     /// Checks the games that a file defines, once the file itself has no faults.
     ///
     /// # Errors
-    /// All faults of any of them.
+    /// All faults in these games.
     fn check_games(&self) -> Result<(), Problems> {
         Ok(())
     }
@@ -80,7 +80,7 @@ impl Kind {
         }
     }
 
-    /// Its name, also that of its schema file.
+    /// The name of the kind, and of its schema file.
     pub fn name(self) -> &'static str {
         self.name
     }
@@ -98,7 +98,7 @@ impl Kind {
         (self.check)(path)
     }
 
-    /// The kind with the folder of `path`, if any.
+    /// The kind whose folder contains `path`, if any.
     pub fn by_folder(kinds: &[Kind], path: &Path) -> Option<Kind> {
         let folder = path.parent()?.file_name()?;
         kinds.iter().copied().find(|kind| folder == kind.folder)
@@ -115,8 +115,8 @@ impl Kind {
         best.unwrap_or(Kind::GAME)
     }
 
-    /// The kind to which a file with these top-level keys clearly belongs, if not to this one: with
-    /// at least two more of them.
+    /// The kind to which a file with these top-level keys clearly belongs instead of this one,
+    /// because it has at least two more of them.
     pub fn other_by_keys(self, kinds: &[Kind], keys: &BTreeSet<String>) -> Option<Kind> {
         Some(Kind::by_keys(kinds, keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)
     }

@@ -4,7 +4,7 @@
 //! game. [`load`] creates it. Its types and those in `raw` declare the keys of files, and `schema`
 //! generates their JSON Schemas. `read` finds the files and merges them with their bases,
 //! `validate` reads them by their schema, and `check` converts them to the checked types. A
-//! `Loader` is the context of one reading; its `diagnostics` collect every [`Problem`].
+//! `Loader` is the context for reading one game; its `diagnostics` collect every [`Problem`].
 
 pub mod action;
 pub mod boat;
@@ -86,9 +86,9 @@ use thiserror::Error;
 pub struct Scenario {
     /// The game file's stem.
     pub name: String,
-    /// Selects the game; `--seed` overrides it.
+    /// Random seed; each seed gives a different game. `--seed` overrides it.
     pub seed: u64,
-    /// Later seeds that replace it during the game, by ascending time.
+    /// Later seeds that replace `seed` during the game, by ascending time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reseed: Vec<Reseed>,
     /// Physics tick.
@@ -97,7 +97,7 @@ pub struct Scenario {
     pub ticks_per_decision: u32,
     /// Lockstep: wall-clock time that the sim waits for a mind before treating it as lost, s.
     pub patience_s: f64,
-    /// Real time: maximum age of an order, in simulated time, before the boat holds, s.
+    /// In real-time games: maximum age of an order, in simulated seconds, before the boat holds.
     pub order_ttl_s: f64,
     /// The field of play.
     pub field: Field,
@@ -105,7 +105,7 @@ pub struct Scenario {
     pub rules: Rules,
     /// The sea.
     pub sea: Sea,
-    /// The radio links between minds and boats; `None`: no delay and no loss.
+    /// The radio links between minds and boats; `None` means no delay and no loss.
     pub link: Option<Link>,
     /// Faults during the game.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -132,7 +132,7 @@ impl Scenario {
         index.map(VehicleId::at)
     }
 
-    /// The vehicle with this name, given by a user.
+    /// The vehicle with a name given by a user.
     ///
     /// # Errors
     /// [`UnknownVehicle`] with the existing names.
@@ -150,7 +150,7 @@ impl Scenario {
     /// Scenarios loaded from files satisfy this; those from other sources may not.
     ///
     /// # Errors
-    /// The first violation, as text.
+    /// The first violation, as a string.
     pub fn check_received(&self) -> Result<(), String> {
         let within = |what: &str, index: usize, count: usize| {
             if index < count {
@@ -206,7 +206,7 @@ impl Scenario {
         self.vehicles[vehicle.index()].team
     }
 
-    /// The numbers of mates and enemies of a vehicle.
+    /// The numbers of teammates and enemies of a vehicle.
     pub fn sides_of(&self, vehicle: VehicleId) -> (usize, usize) {
         let team = self.team_of(vehicle);
         let fellows = self.vehicles.iter().filter(|other| other.team == team);
@@ -253,7 +253,7 @@ pub struct Vehicle {
     pub boat: usize,
     /// Index into [`Scenario::strategies`].
     pub strategy: usize,
-    /// Older recordings use the field's former name.
+    /// Older recordings use a former name of this field.
     #[serde(alias = "berth")]
     pub start_position: StartPosition,
     /// The source of its motion.
@@ -284,8 +284,8 @@ pub enum StartPosition {
         /// Bounds along the field, m from the team's own end.
         along_m: (f64, f64),
         /// Bounds across the field, m from the port edge as seen from the team's own end. For the
-        /// first team that edge joins corners 1 and 2 (`across` is the field's depth less this);
-        /// for the second it joins corners 0 and 3 (`across` is this).
+        /// first team, that edge joins corners 1 and 2 (`across` is the field's depth minus this);
+        /// for the second, it joins corners 0 and 3 (`across` is this).
         across_m: (f64, f64),
         /// Minimum distance to other vehicles and obstacles, m.
         gap_m: f64,

@@ -1,13 +1,13 @@
 //! Radio links between minds and boats, with their delays and losses.
 //!
-//! They belong to the game and are seeded like everything in it. Faults of the real network are
-//! separate.
+//! They belong to the game and depend on its seed like everything in it. Faults of the real network
+//! are separate.
 
 use primitives::frame::Ned;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The radio link between the minds ashore and each boat.
+/// The radio link between each boat and its mind on shore.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Link {
     /// Minimum delay of a message, s.
@@ -23,7 +23,7 @@ pub struct Link {
     /// Range, m. Default: unlimited.
     #[schemars(range(min = 1, max = 1000000))]
     pub range_m: Option<f64>,
-    /// Position of the shore station, [x, y] in m from the datum. Default: the middle of the field.
+    /// Position of the shore station, [x, y] in m from the datum. Default: the centre of the field.
     #[serde(default)]
     #[schemars(with = "Option<[f64; 2]>", !default, inner(range(min = -1000000, max = 1000000)))]
     #[schemars(extend("x-field" = "station"))]

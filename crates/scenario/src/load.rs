@@ -14,8 +14,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads and checks the game file at `path` and every file it refers to. Distributions are drawn
-/// with the game's own seed; [`Scenario::of_seed`] draws others.
+/// Reads and checks the game file at `path` and all referenced files. Distributions are drawn with
+/// the game's own seed; [`Scenario::of_seed`] uses others.
 ///
 /// # Errors
 /// All faults of all files, by file, line and column.
@@ -26,12 +26,13 @@ pub fn load(path: &Path) -> Result<Scenario, Problems> {
 /// Reads and checks a game with overrides.
 ///
 /// # Errors
-/// All faults of all files, by file, line and column; or a strategy for an unknown team.
+/// All faults of all files, by file, line and column; or the fault of a strategy for an unknown
+/// team.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     load_with_files(path, overrides, &Arc::default())
 }
 
-/// As [`load_with`], from these files.
+/// As for [`load_with`], from these files.
 ///
 /// # Errors
 /// All faults of all files, as above.
@@ -61,10 +62,10 @@ fn load_game(path: &Path, overrides: &Overrides, basis: Basis) -> Result<Scenari
         basis: loader.into_basis(),
         seed: None,
     };
-    // At both ends of every distribution, so that most mistakes are found before any game. The
+    // Check both ends of every distribution, so that most mistakes are found before any game. The
     // combination of numbers is checked again for each seed, which takes less than a millisecond.
-    // Drawing on the checked types would be faster, but would leave estimates from a drawn number
-    // at their nominal values.
+    // Drawing on the checked types would be faster, but estimates based on a drawn number would
+    // keep their nominal values.
     least.drawn_again(&recipe, Drawing::Greatest)?;
     least.recipe = Some(recipe);
     least.of_seed(least.seed)
@@ -74,7 +75,7 @@ impl Scenario {
     /// This scenario's game with `seed`: distributions are drawn again.
     ///
     /// # Errors
-    /// Faults of the combination of numbers, each valid alone.
+    /// Faults of the combination of numbers, each of which is valid alone.
     pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
         let is_other = |recipe: &&Recipe| recipe.seed != Some(seed);
         let Some(recipe) = self.recipe.as_ref().filter(is_other) else {
@@ -96,14 +97,14 @@ impl Scenario {
         })
     }
 
-    /// The game of its recipe with numbers drawn like this, and what was read for it.
+    /// The game of a recipe, with numbers drawn in this way, and the data read for it.
     fn drawn_again(
         &self,
         recipe: &Recipe,
         drawing: Drawing,
     ) -> Result<(Scenario, Basis), Problems> {
         let mut basis = recipe.basis.clone();
-        // A recorded recipe has only the texts.
+        // A recorded recipe contains only the files.
         if basis.checked.is_empty() {
             let texts = recipe.files.iter();
             let texts = texts.map(|(path, text)| (path.clone(), text.clone().into_bytes()));
@@ -117,19 +118,19 @@ impl Scenario {
     }
 }
 
-/// Reads and checks the file at `path` as one of its kind.
+/// Reads and checks the file at `path` as a file of kind `F`.
 ///
 /// # Errors
-/// All faults of it, its bases and the files it refers to, by file, line and column.
+/// All faults of it, its bases and referenced files, by file, line and column.
 pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
     F::load(path)
 }
 
-/// Reads and checks the file at `path` as one of its kind, and draws its numbers as in the game
+/// Reads and checks the file at `path` as a file of kind `F`, and draws its numbers as in the game
 /// with this seed.
 ///
 /// # Errors
-/// All faults of it, its bases and the files it refers to, by file, line and column.
+/// All faults of it, its bases and referenced files, by file, line and column.
 pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Drawn>), Problems> {
     let read = |drawing: Drawing| {
         Loader::new(drawing, &Overrides::default(), Basis::default()).faultless::<F>(path)
@@ -142,11 +143,11 @@ pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Draw
     read(Drawing::Seed(seed))
 }
 
-/// Checks a game with these overrides and others that set the same keys. Files that no setting
-/// changes are checked once.
+/// Checks a game with these overrides, and with others that set the same keys. Files that no
+/// setting changes are checked once.
 ///
 /// # Errors
-/// All faults of any of its files.
+/// All faults of any of the game's files.
 pub fn check_variants(
     game: &Path,
     first: &Overrides,
@@ -162,7 +163,7 @@ pub fn check_variants(
     Problems::of(faults.flat_map(|Problems(found)| found).collect())
 }
 
-/// The result of an empty file of a kind.
+/// The value of an empty file of a kind.
 ///
 /// # Errors
 /// If a key has no default.
@@ -178,18 +179,18 @@ pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
 
 /// Reads and checks a scenario file of any of these kinds, and returns its kind.
 ///
-/// The folder determines the kind. In any other folder it is the kind with the most of the file's
+/// The folder determines the kind. In any other folder, it is the kind with the most of the file's
 /// top-level keys, including those of its bases; ties go to the first of `kinds`.
 ///
 /// # Errors
-/// All faults of it, its bases and the files it refers to.
+/// All faults of it, its bases and referenced files.
 pub fn check_file(kinds: &[Kind], path: &Path) -> Result<Kind, Problems> {
     let kind =
         Kind::by_folder(kinds, path).unwrap_or_else(|| Kind::by_keys(kinds, &top_keys(path)));
     kind.check(path).map(|()| kind)
 }
 
-/// The kind that a file belongs to by its folder or its keys, if clearly not the expected one.
+/// The kind to which a file clearly belongs by its folder or keys, if not the expected one.
 pub fn other_kind(kinds: &[Kind], path: &Path, expected: Kind) -> Option<Kind> {
     match Kind::by_folder(kinds, path) {
         Some(kind) => (kind != expected).then_some(kind),

@@ -1,4 +1,4 @@
-//! The reading of a file and of all files it refers to.
+//! The process of reading a file and all referenced files.
 
 use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn};
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Name of the kind, path, and owner: for strategies, a team with its own values in it.
+/// Name of the kind, path, and owner: for strategies, the team whose settings are in it.
 pub(super) type Key = (&'static str, PathBuf, String);
 
 pub(super) fn key<F: ScenarioFile>(path: &Path, owner: &str) -> Key {
@@ -24,9 +24,9 @@ pub(super) fn key<F: ScenarioFile>(path: &Path, owner: &str) -> Key {
     (F::NAME, path.to_owned(), owner.to_owned())
 }
 
-/// What was read for a game: its files, and the checked values of those without numbers to draw.
-/// Redrawing a game does not check these again. It follows from the texts, so comparisons and
-/// recordings exclude it.
+/// The data read for a game: its files, and the checked values of files without numbers to draw.
+/// Redrawing a game does not check these again. They follow from the files, so comparisons and
+/// recordings exclude them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Basis {
     pub(super) files: Arc<Files>,
@@ -39,7 +39,7 @@ impl PartialEq for Basis {
     }
 }
 
-/// Reads files with these overrides and draws numbers like this.
+/// Reads files with these overrides, and draws numbers by this method.
 #[derive(Debug)]
 pub(super) struct Loader {
     pub(super) drawing: Drawing,
@@ -66,7 +66,7 @@ impl Loader {
     }
 
     /// Reads and checks the file at `path`, with numbers drawn for `owner`. If it cannot be read,
-    /// the problem is at `asked_at`, the reference.
+    /// the problem is at the reference, `asked_at`.
     pub(super) fn read<F: ScenarioFile>(
         &self,
         path: &Path,
@@ -81,7 +81,7 @@ impl Loader {
         let before = state();
         let document = read::document(self, Kind::of::<F>(), path, asked_at, owner)?;
         let value = F::check(&document)?;
-        // A game depends on overrides of other files as well.
+        // A game also depends on overrides of other files.
         if state() == before && F::NAME != Scenario::NAME {
             let checked = Arc::new(value.clone());
             self.checked.borrow_mut().insert(key, checked);
@@ -89,7 +89,7 @@ impl Loader {
         Some(value)
     }
 
-    /// Reads and checks the file at `path`; its value and the drawn numbers, if there are no
+    /// Reads and checks the file at `path`; returns its value and the drawn numbers if there are no
     /// faults.
     pub(super) fn faultless<F: ScenarioFile>(
         &self,

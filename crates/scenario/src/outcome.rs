@@ -16,7 +16,7 @@ pub struct Outcome {
     pub seed: u64,
     /// The version of Squall that played it.
     pub version: String,
-    /// Digest of the final state and of all events, hex.
+    /// Digest of the final state and all events, in hex.
     pub digest: String,
     /// Simulated time played, s.
     pub duration_s: f64,
@@ -28,7 +28,7 @@ pub struct Outcome {
     /// Whether the game depends on the seed.
     #[serde(default)]
     pub random: bool,
-    /// Whether wind, waves or current favour one end of the field: a single game then does not show
+    /// Whether wind, waves or current favour one end of the field: then a single game does not show
     /// which team is better.
     #[serde(default)]
     pub ends_differ: bool,
@@ -136,8 +136,8 @@ impl EventOutcome {
 }
 
 impl Outcome {
-    /// The outcome of a game with this digest of its final state and all events, after this many
-    /// physics ticks, with these points by team index.
+    /// The outcome of a game with this digest of its final state and all events, this many physics
+    /// ticks, and these points by team index.
     pub fn new(
         scenario: &Scenario,
         digest: u128,

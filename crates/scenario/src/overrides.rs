@@ -1,4 +1,4 @@
-//! Overrides of a game's content: other files, single values, and simulation of real boats.
+//! Overrides of a game's content: different files, single values, and simulation of real boats.
 
 use super::setting::Setting;
 use serde::{Deserialize, Serialize};
@@ -12,12 +12,12 @@ pub struct Overrides {
     pub sea: Option<PathBuf>,
     /// Strategy files by team name; they also replace the strategies of single boats.
     pub strategies: BTreeMap<String, PathBuf>,
-    /// Exchanges the strategies of the two teams; no boat of the game may have its own.
+    /// Whether to exchange the strategies of the two teams; no boat of the game may have its own.
     #[serde(default)]
     pub exchange_strategies: bool,
-    /// A rehearsal: all boats are simulated, whatever their source.
+    /// Whether this is a rehearsal: all boats are simulated, whatever their source.
     pub simulate_all: bool,
-    /// Overrides of single values; the last one for a key counts.
+    /// Overrides of single values; for each key, the last one counts.
     #[serde(default)]
     pub settings: Vec<Setting>,
 }
@@ -30,7 +30,7 @@ impl Overrides {
     }
 
     /// The name of this team if a setting overrides a value of its strategy, otherwise an empty
-    /// name: the owner of the strategy's file. Teams without overrides share a file.
+    /// name: it is the owner of the strategy file. Teams without overrides share a file.
     pub(super) fn owner_of_strategy<'a>(&self, team: &'a str) -> &'a str {
         let mut settings = self.settings.iter();
         let has_own = settings.any(|setting| setting.team() == Some(team));

@@ -1,4 +1,4 @@
-//! A trained policy: the network of an ONNX file, with its observation and action spaces.
+//! A trained policy: the network in an ONNX file, with its observation and action spaces.
 
 use crate::action::ActionSpace;
 use crate::observation::ObservationSpace;
@@ -15,7 +15,7 @@ pub const BYTES_MAX: u64 = 1 << 20;
 /// Allowed period of a policy, s.
 pub const PERIODS_S: RangeInclusive<f64> = 0.01..=10.0;
 
-/// Metadata keys of a model, by [`PolicySpec`]'s fields.
+/// Metadata keys of a model, one for each field of [`PolicySpec`].
 const OBSERVATION: &str = "squall.observation";
 const OBSERVATION_VERSION: &str = "squall.observation_version";
 const ACTION: &str = "squall.action";
@@ -49,7 +49,7 @@ pub struct PartialSpec {
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(into = "Sent", try_from = "Sent")]
 pub struct PolicyModel {
-    /// Its file, as found.
+    /// Its file name, as found.
     pub name: String,
     /// Its observations, actions and period.
     pub spec: PolicySpec,
@@ -64,7 +64,7 @@ impl PolicyModel {
     ///
     /// # Errors
     /// If the network is invalid, a field is missing or contradicts `said`, or the inputs and
-    /// outputs do not match: the value found and the allowed values.
+    /// outputs do not match: the values found and allowed.
     pub fn read(name: &str, bytes: &[u8], said: PartialSpec) -> Result<PolicyModel, String> {
         let network = Network::read(bytes).map_err(|error| error.to_string())?;
         let spec = spec_of(&network, said)?;
@@ -94,7 +94,7 @@ impl PolicyModel {
         self.network.input_size()
     }
 
-    /// The number of discrete actions; none if its actions are continuous.
+    /// The number of discrete actions; `None` if its actions are continuous.
     pub fn actions(&self) -> Option<usize> {
         let outputs = self.network.outputs()[self.output].size;
         // A single output is the index of the action.
@@ -102,18 +102,18 @@ impl PolicyModel {
         (action.is_discrete()).then(|| action.count().unwrap_or(outputs))
     }
 
-    /// Whether it outputs a logit for each discrete action.
+    /// Whether its output is a logit for each discrete action.
     pub fn has_logits(&self) -> bool {
         self.actions() == Some(self.network.outputs()[self.output].size)
     }
 
-    /// The names of its options, if its metadata has them.
+    /// The names of its options, if they are in its metadata.
     pub fn options(&self) -> Option<Vec<&str>> {
         let names = self.network.metadata().get(OPTIONS)?;
         (self.spec.action == ActionSpace::Options).then(|| names.split(',').collect())
     }
 
-    /// A discrete action in words: "50 % speed, 45° to port", or the name of the option.
+    /// A discrete action as a string: "50 % speed, 45° to port", or the name of the option.
     pub fn words(&self, action: usize) -> String {
         let option = self
             .options()
@@ -191,7 +191,7 @@ fn spec_of(network: &Network, said: PartialSpec) -> Result<PolicySpec, String> {
     })
 }
 
-/// The value from the metadata or from `said`, if at least one gives it and they do not differ.
+/// The value from the metadata or from `said`, if at least one provides it and they do not differ.
 fn agreed<T: PartialEq + Serialize>(
     key: &str,
     said_by: &str,
@@ -211,7 +211,7 @@ fn agreed<T: PartialEq + Serialize>(
     }
 }
 
-/// Neither the metadata nor the user specifies a field.
+/// The message if neither the metadata nor the user specifies a field.
 fn unsaid(key: &str, said_by: &str) -> String {
     format!("its metadata has no {key}, expected it there or {said_by} here")
 }
@@ -223,7 +223,7 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
         return wrong("one input");
     };
     match observation.edition() {
-        // The size for a game of 1 against 1, and the size per other boat.
+        // The size for a 1-against-1 game, and the additional size for each other boat.
         Some(_) => {
             let least = observation.size(0, 1);
             let other = observation.size(1, 1) - observation.size(0, 1);
@@ -242,8 +242,8 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
     Ok(())
 }
 
-/// The index of the output with the action: the only one of the right size, or else the only one
-/// for an action index, which is an integer if a value is beside it. The number of options is the
+/// The index of the output with the action: the only output of the right size, or else the only one
+/// for an action index, which is an integer if there is also a value. The number of options is the
 /// output's size.
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     let of = |is_it: &dyn Fn(&Port) -> bool| -> Vec<usize> {
@@ -282,7 +282,7 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     }
 }
 
-/// Inputs or outputs, as text for a message.
+/// Inputs or outputs, listed for a message.
 fn listed(ports: &[Port]) -> String {
     let shown = ports.iter().take(8);
     let shown = shown.map(|port| format!("{:?} of {} numbers", port.name, port.size));

@@ -31,7 +31,7 @@ impl Problem {
         }
     }
 
-    /// Its place, as in `boats/heron.toml:3:17`.
+    /// The place of the problem, as in `boats/heron.toml:3:17`.
     pub fn place(&self) -> String {
         format!(
             "{}:{}:{}",
@@ -48,13 +48,13 @@ impl fmt::Display for Problem {
     }
 }
 
-/// All faults of a file and the files it refers to, by file, line and column; never empty.
+/// All faults of a file and its referenced files, by file, line and column; never empty.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", one_a_line(.0))]
 pub struct Problems(pub Vec<Problem>);
 
 impl Problems {
-    /// These problems in order, each once, if there are any.
+    /// These problems sorted and without duplicates, if there are any.
     ///
     /// # Errors
     /// The problems.

@@ -1,4 +1,4 @@
-//! Reads a file by path: text, bases, merging, and validation by its schema.
+//! Reads a file by path: its content, bases, merging, and validation by its schema.
 
 use super::diagnostics::{NAME_EXPECTED, is_name};
 use super::kind::{Kind, ScenarioFile};
@@ -14,13 +14,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
 
-/// A file merged with its bases and read by its schema. Its values are addressed by path, for
-/// example `team.1.name`.
+/// A file merged with its bases and read by its schema. Its values are addressed by path, such as
+/// `team.1.name`.
 #[derive(Debug)]
 pub struct Document<'a, T> {
     /// Its stem.
     pub name: String,
-    /// Its content; `validate` defines the stand-ins for faulty values.
+    /// Its content; `validate` provides the stand-ins for faulty values.
     pub raw: T,
     pub(super) loader: &'a Loader,
     /// The number of faults before this file was read.
@@ -42,12 +42,12 @@ impl<T> Document<'_, T> {
         (place.path, place.line, place.column)
     }
 
-    /// Whether the file or one of its bases has a value there.
+    /// Whether the file or one of its bases has a value at `path`.
     pub fn has(&self, path: &str) -> bool {
         self.tree.find(path).1
     }
 
-    /// Whether the value there, or its absence, satisfies the schema, including its parts and
+    /// Whether the value at `path`, or its absence, satisfies the schema, including its parts and
     /// parents.
     pub fn is_sound(&self, path: &str) -> bool {
         let is_below = |long: &str, short: &str| {
@@ -64,13 +64,13 @@ impl<T> Document<'_, T> {
     }
 
     /// Reports a fault of the value at `path` that broken syntax in the file may have caused,
-    /// unless there is some.
+    /// unless there is broken syntax.
     pub(super) fn note_if_intact(&self, path: &str, message: impl Into<String>) {
         let at = self.at(path);
         self.loader.diagnostics.note_if_intact(at, message);
     }
 
-    /// Reports a missing value at `path`, unless a value of another type is there.
+    /// Reports a missing value at `path`, unless there is a value of a different type.
     pub(super) fn note_missing(&self, path: &str, expected: &str) {
         if self.is_sound(path) {
             let at = self.at(path);
@@ -87,13 +87,13 @@ impl<T> Document<'_, T> {
         is_fit
     }
 
-    /// The path of the file that `reference`, at `path`, refers to.
+    /// The path of the file to which `reference`, at `path`, refers.
     pub fn resolve(&self, path: &str, reference: impl AsRef<Path>) -> PathBuf {
         let sources = self.loader.diagnostics.sources.borrow();
         sources.resolve(self.at(path), reference)
     }
 
-    /// Reads and checks the file of another kind that `reference`, at `path`, refers to.
+    /// Reads and checks the file of a different kind to which `reference`, at `path`, refers.
     pub fn referenced<F: ScenarioFile>(
         &self,
         path: &str,
@@ -104,14 +104,14 @@ impl<T> Document<'_, T> {
         self.loader.read(&file, Some(self.at(path)), F::NAME)
     }
 
-    /// As [`Document::referenced`], and resolves the reference.
+    /// Like [`Document::referenced`], and also resolves the reference.
     pub fn resolved<F: ScenarioFile>(&self, path: &str, reference: &mut PathBuf) -> Option<F> {
         let file = self.referenced(path, &*reference);
         *reference = self.resolve(path, &*reference);
         file
     }
 
-    /// Whether no fault was found in it, or in anything checked since it was read.
+    /// Whether no fault was found in the file, or in anything checked since it was read.
     pub fn is_faultless(&self) -> bool {
         self.loader.diagnostics.faults() == self.faults
     }
@@ -124,7 +124,7 @@ const LONGEST_CHAIN: usize = 16;
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
 /// Reads the file of a kind at `path` with its bases, and draws its numbers for `owner`. If it
-/// cannot be read, the problem is at `asked_at`, the reference.
+/// cannot be read, the problem is at the reference, `asked_at`.
 pub(super) fn document<'a, T: DeserializeOwned>(
     loader: &'a Loader,
     kind: Kind,
@@ -144,7 +144,7 @@ pub(super) fn document<'a, T: DeserializeOwned>(
     document_of_tree(loader, kind, path, tree, (owner, faults))
 }
 
-/// The document of a file of a kind with this text.
+/// The document of a file of the given kind with this content.
 pub(super) fn document_of_text<'a, T: DeserializeOwned>(
     loader: &'a Loader,
     kind: Kind,
@@ -156,8 +156,8 @@ pub(super) fn document_of_text<'a, T: DeserializeOwned>(
     document_of_tree(loader, kind, path, tree, (kind.name(), faults))
 }
 
-/// A tree with the settings for its kind, read by the schema; `faults` is the number of faults
-/// before it.
+/// The document of a tree with the settings for its kind, read by the schema; `faults` is the
+/// number of faults before it.
 fn document_of_tree<'a, T: DeserializeOwned>(
     loader: &'a Loader,
     kind: Kind,
@@ -209,8 +209,8 @@ fn put_settings(loader: &Loader, (kind, owner): (Kind, &str), tree: &mut Node) {
     }
 }
 
-/// Reads a file, merges it with its bases, and reports their syntax errors; the keys `own` of bases
-/// do not count.
+/// Reads a file, merges it with its bases, and reports their syntax errors; in bases, the keys in
+/// `own` do not count.
 pub(super) fn tree(
     loader: &Loader,
     path: &Path,
@@ -261,7 +261,7 @@ pub(super) fn tree(
     }
 }
 
-/// The path of a base: a name without extension is that of a file in the same folder.
+/// The path of a base: a name without an extension means a file in the same folder.
 fn named(base: &str) -> String {
     let is_name = !base.is_empty() && base.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if is_name {
@@ -298,7 +298,7 @@ fn text_of(loader: &Loader, path: &Path, asked_at: Option<usize>) -> Option<Arc<
     }
 }
 
-/// Adds a file to the virtual text. Returns its tree, as far as its syntax is valid; reports syntax
+/// Adds a file to the virtual text. Returns its tree, as far as the syntax is valid; reports syntax
 /// errors.
 fn parsed(loader: &Loader, path: &Path, text: &str) -> Node {
     let diagnostics = &loader.diagnostics;

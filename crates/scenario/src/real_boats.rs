@@ -11,7 +11,7 @@ use thiserror::Error;
     .names.join(", ")
 )]
 pub struct RealBoats {
-    /// Their names.
+    /// The names of the real boats.
     pub names: Vec<String>,
 }
 
@@ -27,7 +27,7 @@ impl Scenario {
     /// Checks that the game can run without a clock: all boats are simulated.
     ///
     /// # Errors
-    /// [`RealBoats`] with the names of the others.
+    /// [`RealBoats`] with the names of the real boats.
     pub fn has_no_real_boats(&self) -> Result<(), RealBoats> {
         let names = self
             .externals()

@@ -8,7 +8,7 @@ use crate::strategy::{Boat, Fact, Mark, Measure, Named, What, Who};
 use serde_json::Value;
 use std::fmt::Write;
 
-/// Introduction to the tables of all files but strategies.
+/// Introduction to the tables of all files except strategies.
 const FILES: &str = include_str!("reference/files.md");
 
 /// Introduction to the tables of strategies.
@@ -35,7 +35,7 @@ pub fn file_reference(kinds: &[Kind]) -> String {
     page
 }
 
-/// A heading, and the text and table below it.
+/// A heading, with the text and the table below it.
 struct Section {
     heading: String,
     text: String,
@@ -180,7 +180,7 @@ fn names(page: &mut String) {
 }
 
 fn behaviours(page: &mut String, root: &Value) {
-    // A full stop has the common keys of all kinds and none of its own.
+    // A full stop has the common keys of all kinds, and none of its own.
     let common = &root["definitions"]["FullStop"];
     page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind. Speeds are limited to the boat's top speed.\n");
     table(page, common, |_, _| true);
@@ -199,7 +199,7 @@ fn behaviours(page: &mut String, root: &Value) {
     }
 }
 
-/// A table of the keys that are `wanted`, required ones first. The default, in brackets, is that of
+/// A table of the keys that are `wanted`, required keys first. The default, in brackets, is that of
 /// the schema, or else the last sentence of the description.
 fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool) {
     let keys = properties(about).filter(|(key, about)| wanted(key, about));
@@ -249,7 +249,7 @@ pub fn meaning(key: &str) -> Option<String> {
     (!meaning.is_empty()).then(|| meaning.to_owned())
 }
 
-/// The schema of a key of a table: one of its own, any name, or one of a kind of table.
+/// The schema of a key of a table: one of its own keys, any name, or a key of one kind of table.
 fn key_in<'a>(about: &'a Value, key: &str) -> Option<&'a Value> {
     let named = || Some(&about["additionalProperties"]).filter(|named| named.is_object());
     let mut kinds = entries(about, "oneOf").chain(entries(about, "anyOf"));
@@ -265,7 +265,7 @@ fn in_a_line(text: &Value) -> String {
     line(text.as_str().unwrap_or_default())
 }
 
-/// A text in one line, as a cell of a table.
+/// A string on one line, as a cell of a table.
 fn line(text: &str) -> String {
     text.trim().replace('\n', " ").replace('|', "\\|")
 }
@@ -290,12 +290,12 @@ fn range(about: &Value) -> String {
     }
 }
 
-/// Whether it is a list of two numbers.
+/// Whether a list contains exactly two numbers.
 fn is_pair(about: &Value) -> bool {
     about["minItems"] == 2 && about["maxItems"] == 2 && about["items"].get("properties").is_none()
 }
 
-/// The allowed values, in words; a range alone is that of a number.
+/// The allowed values, in plain language; a range alone is that of a number.
 fn value_of(about: &Value) -> String {
     if let Some(choices) = about["oneOf"].as_array() {
         return choices.iter().map(choice).collect::<Vec<_>>().join(", ");
@@ -317,7 +317,7 @@ fn value_of(about: &Value) -> String {
     }
 }
 
-/// One of several values: a text, or a table by its kind and keys.
+/// One of several values: a string, or a table by its kind and keys.
 fn choice(about: &Value) -> String {
     match about["properties"].as_object() {
         Some(keys) => {
@@ -343,7 +343,7 @@ fn items_of(about: &Value) -> String {
     }
 }
 
-/// The type in a schema, in words.
+/// The type in a schema, in plain language.
 fn kind_of(about: &Value) -> String {
     if let Some(title @ ("boat" | "place")) = about["title"].as_str() {
         return title.to_owned();

@@ -1,7 +1,7 @@
 //! The JSON Schema of each kind of scenario file: the single source of every key's type, range,
 //! default and meaning.
 //!
-//! A key is a field of a type, and is declared once, there:
+//! A key is a field of a type, and is declared only once, there:
 //!
 //! ```text
 //! /// An intruder is tagged closer than this, m.
@@ -23,7 +23,7 @@
 //! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
 //!
 //! [`declared`] is the schema in this form, used for reading files (see `validate`); [`schema`] is
-//! the one for editors.
+//! the schema for editors.
 
 use super::kind::Kind;
 use schemars::{JsonSchema, generate::SchemaSettings};
@@ -43,8 +43,8 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
 
 /// The JSON Schema of a kind of file, for editors.
 ///
-/// Keys are required only where no base can supply them: at the top of a file without one, and in
-/// lists.
+/// Keys are required only where no base can supply them: at the top of a file without a base, and
+/// in lists.
 ///
 /// # Panics
 /// Never: the schema of a distribution is JSON.
@@ -80,7 +80,7 @@ pub(super) fn entries<'a>(schema: &'a Value, list: &str) -> impl Iterator<Item =
     schema[list].as_array().into_iter().flatten()
 }
 
-/// Whether a table must have a key.
+/// Whether a key is required in a table.
 pub(super) fn is_required(schema: &Value, key: &str) -> bool {
     entries(schema, "required").any(|known| known == key)
 }
@@ -102,8 +102,8 @@ pub(super) const DRAWN: &str = "x-drawn";
 pub(super) const TABLE: &str = "x-table";
 
 /// Converts the schema of a table for editors: without Squall's own marks, with distributions where
-/// they are allowed, and each description in one line. Keys are required in entries of lists only,
-/// except those that default to an empty list or a table of defaults.
+/// they are allowed, and with each description on one line. Keys are required only in entries of
+/// lists, except those that default to an empty list or a table of defaults.
 fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     let object = match value {
         Value::Array(items) => {
@@ -117,7 +117,7 @@ fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
     let is_drawn = is_drawn || object.contains_key(DRAWN);
     object.retain(|key, _| !key.starts_with("x-") && (is_item || key != "required"));
     if let Some(Value::String(text)) = object.get_mut("description") {
-        // The line breaks are those of a wrapped comment.
+        // These line breaks come from the wrapped comment.
         *text = text.replace('\n', " ");
     }
     if let Some(properties) = object.get("properties").cloned() {
@@ -126,7 +126,7 @@ fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
             required.retain(|key| !may_be_empty(&properties[key.as_str().unwrap_or_default()]));
         }
     }
-    // A file with a base need not repeat which of several tables this is.
+    // A file with a base need not repeat which of several tables it defines.
     if object
         .get("oneOf")
         .is_some_and(|kinds| kinds[0].get("properties").is_some())
@@ -163,8 +163,8 @@ pub(super) fn generated<T: JsonSchema>(kind: Kind) -> Value {
     schema
 }
 
-/// Replaces references with their definitions. Keys with a default are not required, and may not be
-/// null, since TOML has no null.
+/// Replaces references with their definitions. Keys with a default are not required, and must not
+/// be null, since TOML has no null.
 fn tidy(value: &mut Value, definitions: &Value) {
     let is_null =
         |choice: &Value| *choice == "null" || choice.get("type").is_some_and(|kind| kind == "null");
@@ -172,7 +172,7 @@ fn tidy(value: &mut Value, definitions: &Value) {
         items.iter_mut().for_each(|item| tidy(item, definitions));
     }
     let Value::Object(object) = value else { return };
-    // Draft 7 ignores siblings of a reference, which is therefore in a list of one.
+    // Draft 7 ignores siblings of a reference, so the reference is in a list with one entry.
     let reference = object.remove("$ref").or_else(|| {
         object
             .remove("allOf")
@@ -214,7 +214,7 @@ fn tidy(value: &mut Value, definitions: &Value) {
     }
 }
 
-/// Adds the entries of `other` that `object` lacks.
+/// Adds the entries of `other` that are missing in `object`.
 fn add(object: &mut Map<String, Value>, other: Value) {
     if let Value::Object(other) = other {
         for (key, value) in other {

@@ -31,7 +31,7 @@ pub struct Sea {
 }
 
 impl Sea {
-    /// Whether nothing here moves boats. Otherwise one end of a field has an advantage.
+    /// Whether nothing in this sea moves boats. Otherwise one end of a field has an advantage.
     pub fn is_at_rest(&self) -> bool {
         let Current {
             mean_m_s,
@@ -64,8 +64,8 @@ impl Sea {
 
 /// A spectrum with its directional spreading.
 ///
-/// The spectrum is JONSWAP's with peak enhancement γ; γ = 1 is that of Pierson and Moskowitz in the
-/// two-parameter form of Bretschneider.
+/// The spectrum is JONSWAP with peak enhancement γ; γ = 1 gives the Pierson-Moskowitz spectrum in
+/// Bretschneider's two-parameter form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Waves {
     /// Significant wave height, m.
@@ -91,9 +91,9 @@ pub enum Spreading {
     None,
     /// (2/π) cos² μ within 90° of the mean direction.
     CosineSquared,
-    /// Proportional to cos^(2s) (μ/2), all round (Longuet-Higgins).
+    /// Proportional to cos^(2s) (μ/2), in all directions (Longuet-Higgins).
     Cosine2s {
-        /// s: the larger, the narrower.
+        /// s: the larger it is, the narrower the spread.
         s: f64,
     },
 }
@@ -112,7 +112,7 @@ pub struct Wind {
 }
 
 /// The variation of the wind about its mean. Gusts travel with the mean wind, unchanged (Taylor's
-/// hypothesis): boats feel the same gust one after the other.
+/// hypothesis), so boats feel the same gust one after the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Gusts {
     /// None.
@@ -123,7 +123,7 @@ pub enum Gusts {
         intensity: f64,
         /// Standard deviation across the wind divided by that along it.
         across_ratio: f64,
-        /// Length scale, m: the time constant is this divided by the mean speed at the boat.
+        /// Length scale, m; the time constant is this divided by the mean speed at the boat.
         length_m: f64,
     },
 }
@@ -139,9 +139,9 @@ pub struct Current {
     pub tide: Option<Tide>,
     /// A linear change across the flow.
     pub shear: Option<Shear>,
-    /// Eddies at given places.
+    /// Eddies at given positions.
     pub eddies: Vec<Eddy>,
-    /// Eddies at random places of the field.
+    /// Eddies at random positions on the field.
     #[serde(alias = "eddies_by_lot")]
     pub random_eddies: Option<RandomEddies>,
 }
@@ -149,7 +149,7 @@ pub struct Current {
 /// A first-order Gauss-Markov process.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Wander {
-    /// Its direction: the unit vector of the mean current, or its bearing where there is no mean.
+    /// Its direction: the unit vector of the mean current, or its bearing if there is no mean.
     #[serde(default)]
     #[schemars(skip)]
     pub toward: Ned,
@@ -185,7 +185,7 @@ pub struct Shear {
     pub across: Ned,
     /// Growth, 1/s.
     pub per_s: f64,
-    /// The place with zero current, m from the datum.
+    /// The point with zero current, m from the datum.
     pub origin: Ned,
 }
 
@@ -206,7 +206,7 @@ pub struct Eddy {
 /// Vortices at random positions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RandomEddies {
-    /// Number.
+    /// Number of eddies.
     #[schemars(range(min = 0, max = 100))]
     pub count: u32,
     /// Core radius, from and to, m.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Maximum latency of fixes, in fix periods.
 pub(crate) const MOST_PERIODS_LATE: f64 = 12.0;
 
-/// Sensors of a boat's own state. `None` measures perfectly and without delay.
+/// Sensors of a boat's own state. `None` means perfect measurement without delay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensors {
     /// Satellite receiver. Default: perfect.
@@ -103,7 +103,7 @@ pub struct Compass {
     pub declination_error_rad: f64,
 }
 
-/// The coefficients of a compass's deviation under their names in files.
+/// The coefficients of a compass's deviation, under their names in files.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "the schema of five keys")]
 struct Deviation {

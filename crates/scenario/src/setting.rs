@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// An override of a value in all files of a kind in a game, checked as if it were in the file.
+/// An override of a value in all files of one kind in a game, checked as if it were in the files.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setting {
     /// The kind of file and the key, as in `sea.waves.hs_m`. `link` and `fault` are tables of the
-    /// game file; `strategy` is followed by the team's name, as in
+    /// game file; `strategy` is followed by a team's name, as in
     /// `strategy.blue.behaviour.pursue.weight`.
     pub key: String,
     /// The value, as TOML.
@@ -36,7 +36,7 @@ const PREFIXES: [(&str, Kind); 8] = [
     ("strategy", Kind::STRATEGY),
 ];
 
-/// The full keys that end with this one: `sea.wind` for `wind`. The shortest come first.
+/// The full keys that end with this one: `sea.wind` for `wind`; shortest first.
 fn complete(key: &str) -> Vec<String> {
     fn collect(found: &mut Vec<String>, about: &Value, path: &str, end: &str) {
         for (name, about) in properties(about) {
@@ -59,7 +59,7 @@ impl Setting {
     /// Parses a setting from the command line. A value that is not TOML is a string.
     ///
     /// # Errors
-    /// If it is not of the form `KEY=VALUE`, or of an unknown kind of file.
+    /// If it does not have the form `KEY=VALUE`, or the kind of file is unknown.
     pub fn parse(text: &str) -> Result<Setting, String> {
         let parts = text
             .split_once('=')
@@ -123,7 +123,7 @@ impl Setting {
         Some(team)
     }
 
-    /// A TOML file with this value only, at its original line and column.
+    /// A TOML file with only this value, at its original line and column.
     pub(super) fn as_file(&self, key: &str) -> String {
         let lines = self.line.saturating_sub(1);
         let columns = self.column.saturating_sub(1);
@@ -135,13 +135,13 @@ impl Setting {
         )
     }
 
-    /// The setting as an argument of a command line, quoted for a shell.
+    /// The setting as a command-line argument, quoted for a shell.
     pub fn argument(&self) -> String {
         format!("--set '{}={}'", self.key, self.value.replace('\'', "'\\''"))
     }
 }
 
-/// The kind of file that a setting's key names, and the key in it.
+/// The kind of file named by a setting's key, and the key in it.
 pub(super) fn target_of(whole: &str) -> Option<(Kind, &str)> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !whole

@@ -1,5 +1,5 @@
-//! Limits of the numbers, and of their products, that determine how much memory a game needs, or
-//! that its calculation relies on.
+//! Limits on numbers and their products that determine how much memory a game needs, or on which
+//! its calculations rely.
 
 use crate::Scenario;
 use crate::boat::Drive;
@@ -10,15 +10,15 @@ use std::ops::RangeInclusive;
 
 /// Maximum number of vehicles of a game.
 pub(crate) const VEHICLES_MAX: usize = 10_000;
-/// Bounds of a helm's courses and speeds.
+/// Limits on the numbers of a helm's courses and speeds.
 pub(crate) const COURSES_MIN: usize = 8;
 pub(crate) const COURSES_MAX: usize = 3600;
 pub(crate) const SPEEDS_MIN: usize = 2;
 pub(crate) const SPEEDS_MAX: usize = 1000;
 /// Maximum number of wave components.
 pub(crate) const COMPONENTS_MAX: u32 = 1024;
-/// Maximum number of candidate decisions (courses by speeds) of all boats together. Each may need
-/// 4 bytes in its helm: 512 MB.
+/// Maximum number of candidate decisions (courses by speeds) of all boats together. Each may need 4
+/// bytes in its helm, 512 MB in total.
 const CANDIDATES_MAX: usize = 1 << 27;
 /// Maximum number of values that all policies together observe. Each may need 8 bytes.
 const OBSERVED_MAX: usize = 1 << 26;
@@ -27,7 +27,7 @@ impl Scenario {
     /// Checks these numbers and products.
     ///
     /// # Errors
-    /// The first number beyond its limits, as text.
+    /// The first number beyond its limits, as a string.
     pub(crate) fn check_sizes(&self) -> Result<(), String> {
         let (vehicles, tick_ns) = (self.vehicles.len(), self.tick.0);
         let ticks = self.ticks_per_decision;
@@ -70,7 +70,7 @@ impl Scenario {
             let helms = roles.iter().map(|role| role.helm);
             let sizes = helms.map(|helm| helm.courses * helm.speeds);
             candidates += sizes.max().unwrap_or(0);
-            // All boats are an upper bound of the mates or enemies of one.
+            // The number of all boats is an upper bound on the teammates or enemies of one.
             let size = |model: &PolicyModel| model.spec.observation.size(0, vehicles);
             let sizes = roles.iter().map(|role| role.models().map(size).sum());
             observed += sizes.max().unwrap_or(0_usize);
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
     use primitives::time::SimTime;
 
-    /// A check, and how to break it.
+    /// A check, and a change that violates it.
     type Case = (&'static str, fn(&mut Scenario));
 
     #[test]

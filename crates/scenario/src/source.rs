@@ -1,5 +1,5 @@
-//! All files read, concatenated in one virtual text: a byte offset identifies file, line and
-//! column.
+//! All files read, concatenated into one virtual text, so that a byte offset identifies file, line
+//! and column.
 
 use super::problem::Problem;
 use std::path::{Component, Path, PathBuf};
@@ -24,7 +24,7 @@ struct Source {
 impl Sources {
     /// Appends a file; returns its offset.
     pub(super) fn add(&mut self, path: PathBuf, text: Arc<str>) -> usize {
-        // With a gap of one byte, so that the end of a file is not the start of the next.
+        // Leave a gap of one byte, so that the end of a file is not the start of the next.
         let last = self.files.last();
         let start = last.map_or(0, |last| last.start + last.text.len() + 1);
         self.files.push(Source {
@@ -76,13 +76,13 @@ impl Sources {
         self.problem(offset, String::new()).line
     }
 
-    /// The text from `offset` to the end of its file.
+    /// The characters from `offset` to the end of the file.
     pub(super) fn text_from(&self, offset: usize) -> &str {
         let file = &self.files[self.index_at(offset)];
         file.text.get(offset - file.start..).unwrap_or_default()
     }
 
-    /// The path of the file that `reference`, at `offset`, refers to.
+    /// The path of the file to which `reference`, at `offset`, refers.
     pub(super) fn resolve(&self, offset: usize, reference: impl AsRef<Path>) -> PathBuf {
         let here = &self.files[self.index_at(offset)].path;
         tidied(&here.parent().unwrap_or(Path::new("")).join(reference))
@@ -108,7 +108,7 @@ impl Sources {
     }
 }
 
-/// `path` without `.` and `name/..`, so that each file has a single path.
+/// `path` without `.` and `name/..`, so that each file has only one path.
 pub fn tidied(path: &Path) -> PathBuf {
     let mut tidy = PathBuf::new();
     for part in path.components() {

@@ -1,4 +1,4 @@
-//! Syntax errors of a file: one message per mistake, without the parser's consequential errors.
+//! Syntax errors of a file: one message per mistake, without the parser's follow-up errors.
 
 use toml::de::DeTable;
 
@@ -29,15 +29,15 @@ pub(super) fn mistakes(text: &str) -> Vec<(usize, String)> {
             in_words(&text[start..end], start)
                 .unwrap_or_else(|| (span.start, first.message().to_owned())),
         );
-        // Without this line: any remaining error is a separate mistake.
+        // Remove this line: any remaining error is a separate mistake.
         text.replace_range(start..end, &" ".repeat(end - start));
     }
     mistakes.sort();
     mistakes
 }
 
-/// Start and end of the line that contains `at`; at the end of the text, of the last line with
-/// content.
+/// Start and end of the line that contains `at`; if `at` is the end of the file, of the last line
+/// with content.
 fn line_of(text: &str, at: usize) -> (usize, usize) {
     let mut at = at.min(text.len());
     while !text.is_char_boundary(at) {
@@ -59,7 +59,7 @@ fn line_of(text: &str, at: usize) -> (usize, usize) {
     }
 }
 
-/// Common mistakes: a value without quotes, or a missing one.
+/// Common mistakes: a value without quotes, or a missing value.
 fn in_words(line: &str, start: usize) -> Option<(usize, String)> {
     let (key, value) = line.split_once('=')?;
     let at = start + line.len() - value.trim_start().len();

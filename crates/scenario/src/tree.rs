@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 pub(super) struct Node {
     /// Its offset.
     pub(super) at: usize,
-    /// The offset of its key; for an element of a list, its own.
+    /// The offset of its key; for an element of a list, its own offset.
     pub(super) key_at: usize,
     pub(super) value: Value,
 }
@@ -85,7 +85,7 @@ impl Node {
         }
     }
 
-    /// Overrides the entries of this with those of `over`.
+    /// Overrides the entries of this node with those of `over`.
     pub(super) fn put(&mut self, over: Node) {
         let is_distribution =
             matches!(&over.value, Value::Table(table) if distribution_kind(table).is_some());
@@ -108,7 +108,7 @@ impl Node {
         }
     }
 
-    /// Merges this over `base`: tables merge, other values replace those of the base.
+    /// Merges this node over `base`: tables merge, other values replace those of the base.
     pub(super) fn lay_over(&mut self, base: Node) {
         let (Value::Table(over), Value::Table(base)) = (&mut self.value, base.value) else {
             return;

@@ -1,4 +1,4 @@
-//! The unit of a key, which is the end of its name.
+//! The unit of a key, given by the end of its name.
 
 /// A unit of numbers in files.
 pub(super) struct Unit {
@@ -6,7 +6,7 @@ pub(super) struct Unit {
     end: &'static str,
     /// Its name in messages.
     pub(super) name: &'static str,
-    /// Converts a number to the unit of its field: SI and radians, but per cent.
+    /// Converts a number to the unit of its field: SI and radians, except per cent.
     pub(super) to_si: fn(f64) -> f64,
 }
 
@@ -14,7 +14,7 @@ const fn unit(end: &'static str, name: &'static str, to_si: fn(f64) -> f64) -> U
     Unit { end, name, to_si }
 }
 
-/// A unit that ends with another one precedes it.
+/// A unit that ends with another unit must precede it.
 const UNITS: [Unit; 16] = [
     unit("_pct_per_deg_s", "per cent per degree/s", f64::to_degrees),
     unit("_pct_per_deg", "per cent per degree", f64::to_degrees),

@@ -1,7 +1,7 @@
 //! Reads a tree by the schema of its kind: reports every mistake, draws distributions, fills in
 //! defaults.
 //!
-//! The result always satisfies the schema. A default, or else the minimum or an empty text,
+//! The result always satisfies the schema. A default, or else the minimum or an empty string,
 //! replaces a faulty or missing value, so that later checks can find more; `Document::is_sound`
 //! returns whether the value is original.
 
@@ -44,7 +44,7 @@ struct Validator<'a> {
     loader: &'a Loader,
     /// Path from the root of the file to the current value, as in `team.1.name`.
     path: String,
-    /// The owner for which numbers are drawn; none where distributions are not allowed.
+    /// The owner for which numbers are drawn; `None` where distributions are not allowed.
     owner: Option<Owner<'a>>,
     /// The paths of faulty or missing values.
     wrong: Vec<String>,
@@ -54,9 +54,9 @@ impl<'a> Validator<'a> {
     /// The value of `node`, if it satisfies the schema.
     fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
         // The crate `jsonschema` is not suitable: it checks JSON values, which have no positions
-        // and cannot be NaN. If a table fits none of several kinds, it reports only that. It also
-        // depends on regular expressions, host names and big fractions. This file covers the part
-        // of JSON Schema that Squall's types use.
+        // and cannot be NaN. If a table matches none of several kinds, it reports only that. It
+        // also depends on regular expressions, host names and big fractions. This file covers the
+        // part of JSON Schema that Squall's types use.
         if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
             return match branches.iter().find(|branch| self.fits(node, branch)) {
                 Some(branch) => self.value(node, branch),
@@ -99,7 +99,7 @@ impl<'a> Validator<'a> {
             || !(bound("minimum", f64::MIN)..=bound("maximum", f64::MAX)).contains(&number)
         {
             let found = match number {
-                // In full, it would have up to 300 digits.
+                // Written out, it would have up to 300 digits.
                 large if large.is_finite() && large.abs() >= 1e15 => format!("{large:e}"),
                 nan if nan.is_nan() => "nan".to_owned(),
                 number => number.to_string(),
@@ -137,7 +137,7 @@ impl<'a> Validator<'a> {
     fn text(&mut self, node: &Node, text: &str, schema: &Json) -> Option<Json> {
         let choices = choices(schema);
         let is_allowed = match schema.get("pattern") {
-            // The only pattern in use: regular expressions are not needed.
+            // The only pattern in use, so regular expressions are not needed.
             Some(pattern) => pattern == NAME_PATTERN && is_name(text),
             None if choices.is_empty() => schema.get("minLength").is_none() || !text.is_empty(),
             None => choices.contains(&text),
@@ -152,7 +152,7 @@ impl<'a> Validator<'a> {
     fn list(&mut self, node: &Node, items: &'a [Node], schema: &'a Json) -> Option<Json> {
         let about = &schema["items"];
         if !counts(schema).contains(&items.len()) {
-            // With too many tables, report the first surplus one.
+            // With too many tables, report the first surplus table.
             let is_table = |item: &&Node| matches!(item.value, Value::Table(_));
             let surplus = items.get(*counts(schema).end()).filter(is_table);
             let message = format!(
@@ -200,7 +200,7 @@ impl<'a> Validator<'a> {
         if let Some(kind) = kinds.iter().find(is_it) {
             return Some(self.table(node, table, kind));
         }
-        // Without its kind, at least check the common keys.
+        // If the kind is missing, at least check the common keys.
         for (key, value) in table.iter().filter(|(other, _)| *other != key) {
             let abouts = kinds.iter().map(|kind| kind["properties"].get(key));
             if let Some(about) = abouts.collect::<Option<Vec<_>>>() {
@@ -249,7 +249,7 @@ impl<'a> Validator<'a> {
     fn property(&mut self, key: &'a str, node: &'a Node, about: &'a Json) -> Option<Json> {
         let outer = self.owner;
         if about.get(DRAWN).is_some() {
-            // A shared table, such as the link of a game, draws its own numbers.
+            // A shared table, such as a game's link, draws its own numbers.
             self.owner = Some(Owner {
                 name: key,
                 path_from: self.path.len() + 1,
@@ -273,7 +273,7 @@ impl<'a> Validator<'a> {
         if schema.get("properties").is_some() {
             return Some(self.table(owner, const { &Table::new() }, schema));
         }
-        // A missing list of tables has the same faults as an empty list.
+        // A missing list of tables has the same faults as an empty one.
         let is_list_of_tables = || schema["items"]["type"] == "object";
         if schema["type"] == "array" && (counts(schema).contains(&0) || is_list_of_tables()) {
             return self.list(owner, &[], schema);
@@ -328,7 +328,7 @@ impl<'a> Validator<'a> {
         keys_of(&self.path).next().unwrap_or("the file")
     }
 
-    /// Whether a value is of the type in the schema.
+    /// Whether a value has the type in the schema.
     fn fits(&self, node: &Node, schema: &Json) -> bool {
         let any_of = |key: &str| {
             let branches = schema.get(key).and_then(Json::as_array);
@@ -342,7 +342,7 @@ impl<'a> Validator<'a> {
                 Value::Text(_) => takes(schema, "string"),
                 Value::Truth(_) => takes(schema, "boolean"),
                 Value::Whole(_) => is_number(schema),
-                // An integer too large for 64 bits is still an integer, out of range.
+                // An integer too large for 64 bits is still an integer, but out of range.
                 Value::Number(number) => {
                     takes(schema, "number") || takes(schema, "integer") && number.abs() > 9e18
                 }
@@ -350,7 +350,7 @@ impl<'a> Validator<'a> {
             }
     }
 
-    /// A value allowed by the schema, as a stand-in for a faulty one.
+    /// A value that the schema allows, as a stand-in for a faulty one.
     fn stand_in(&self, schema: &Json) -> Json {
         if let Some(default) = schema.get("default") {
             return default.clone();
@@ -397,7 +397,7 @@ fn counts(schema: &Json) -> std::ops::RangeInclusive<usize> {
     bound("minItems").unwrap_or(0)..=bound("maxItems").unwrap_or(usize::MAX)
 }
 
-/// The texts that the schema lists as allowed.
+/// The strings that the schema allows.
 fn choices(schema: &Json) -> Vec<&str> {
     let one_of = entries(schema, "oneOf").filter_map(|choice| choice.get("const"));
     let all = entries(schema, "enum").chain(schema.get("const"));
@@ -421,13 +421,13 @@ fn found(node: &Node) -> String {
     }
 }
 
-/// Whether a text is a number with a unit, such as `20kn`.
+/// Whether a string is a number with a unit, such as `20kn`.
 fn has_unit(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         && text.parse::<f64>().is_err()
 }
 
-/// The allowed values, in words.
+/// The allowed values, in plain language.
 fn allowed(schema: &Json) -> String {
     let (from, to) = match &schema["type"] {
         Json::String(kind) if kind == "array" => ("minItems", "maxItems"),
@@ -446,7 +446,7 @@ fn allowed(schema: &Json) -> String {
     }
 }
 
-/// A bound as users write it: 1000000 rather than 1000000.0.
+/// A bound as users would write it: 1000000 rather than 1000000.0.
 fn bound(value: &Json) -> String {
     let number = || value.as_f64().unwrap_or(f64::NAN).to_string();
     value
@@ -454,7 +454,7 @@ fn bound(value: &Json) -> String {
         .map_or_else(number, |whole| whole.to_string())
 }
 
-/// The type in the schema, in words.
+/// The type in the schema, in plain language.
 fn kind_of(schema: &Json) -> String {
     if let Some(expected) = schema.get("x-expected").and_then(Json::as_str) {
         return expected.to_owned();

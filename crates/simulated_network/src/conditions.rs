@@ -13,13 +13,13 @@ pub struct Conditions {
     pub loss: f64,
     /// Fraction of published messages that arrive damaged, from 0 to 1, and the kind of damage.
     pub damaged: (f64, Damage),
-    /// A link closes after hearing nothing from the other side for this long.
+    /// A link closes if one side receives nothing from the other for this long.
     pub lease: Duration,
     /// Maximum wait of a leaf without a link between two attempts to connect.
     pub retry: Duration,
-    /// Maximum number of messages that a cut link queues; more are dropped.
+    /// Maximum number of messages queued on a cut link; further ones are dropped.
     pub queue: usize,
-    /// Maximum pause before some published messages, as if the node or another process were
+    /// Maximum pause before some published messages, as if the node or another process were busy
     /// computing.
     pub pause: Duration,
 }
@@ -45,7 +45,7 @@ pub enum Fault {
         /// The duration of the cut.
         time: Duration,
     },
-    /// The process is stopped (`SIGSTOP`) and continues after this time.
+    /// The process is stopped (`SIGSTOP`) and resumes after this time.
     Suspend {
         /// The index of the node.
         node: usize,
@@ -56,7 +56,7 @@ pub enum Fault {
     Kill {
         /// The index of the node.
         node: usize,
-        /// How long after its end it is restarted, if at all.
+        /// Time from its death to its restart, if any.
         restart: Option<Duration>,
     },
 }

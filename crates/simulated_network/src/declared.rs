@@ -1,4 +1,4 @@
-//! The declarations of sessions, their queries, and the callbacks of both.
+//! The declarations of sessions, the queries of sessions, and the callbacks of both.
 
 use crate::packet::{Kind, Packet};
 use bus::Parcel;
@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 /// A callback for an event, called with no lock held.
 pub(crate) type Call = Box<dyn FnOnce() + Send>;
-/// Callbacks for the bytes of a message, for a query, and for a token that has appeared or gone.
+/// Callbacks for the bytes of a message, for a query, and for a token that has appeared or
+/// disappeared.
 pub(crate) type TakeBytes = Arc<dyn Fn(&[u8]) + Send + Sync>;
 pub(crate) type TakeQuery = Arc<dyn Fn(RoutedQuery) + Send + Sync>;
 pub(crate) type TakeToken = Arc<dyn Fn(&str, bool) + Send + Sync>;
@@ -26,7 +27,7 @@ pub(crate) enum What {
     },
     Queryable(TakeQuery),
     Token,
-    /// With the tokens known to be present.
+    /// Includes the tokens known to be present.
     Watch(TakeToken, BTreeSet<String>),
 }
 
@@ -60,10 +61,10 @@ pub(crate) struct RoutedQuery {
     pub(crate) payload: Parcel,
 }
 
-/// A query whose answers are not complete.
+/// A query with incomplete answers.
 pub(crate) struct PendingQuery {
     pub(crate) asker: usize,
-    /// How many sessions may still answer.
+    /// Number of sessions that may still answer.
     pub(crate) open: usize,
     /// Called with each answer, and with `None` after the last one.
     pub(crate) take: Arc<dyn Fn(Option<Parcel>) + Send + Sync>,

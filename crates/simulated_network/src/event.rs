@@ -29,7 +29,7 @@ pub(crate) enum Event {
         up: bool,
         arrival: u64,
     },
-    /// An end of a link has heard nothing for the lease, if the link is unchanged since.
+    /// One end of a link has received nothing for the lease, if the link is unchanged since.
     LeaseOver {
         link: usize,
         at_hub: bool,
@@ -39,7 +39,7 @@ pub(crate) enum Event {
     Reconnect {
         session: usize,
     },
-    /// A session receives its own message, or a token that was present before it asked.
+    /// A session receives its own message, or a token that was already present when it asked.
     Local {
         session: usize,
         local: Local,

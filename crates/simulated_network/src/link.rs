@@ -1,4 +1,4 @@
-//! The link of a leaf to its hub: it delays messages, keeps their order, and closes when either
+//! The link of a leaf to its hub: it delays messages, keeps them in order, and closes if either
 //! side is silent for the lease.
 
 use crate::conditions::{Conditions, Damage};
@@ -14,7 +14,7 @@ const SENT_AGAIN: Duration = Duration::from_millis(200);
 const RETRY_LEAST: Duration = Duration::from_millis(100);
 
 impl State {
-    /// Opens a link, and gives the hub the leaf's declarations.
+    /// Opens a link, and passes the leaf's declarations to the hub.
     pub(crate) fn connect(&mut self, leaf: usize, hub: usize) {
         let link = self.links.len();
         self.links.push(Link {
@@ -66,8 +66,8 @@ impl State {
         let packet = match packet {
             _ if !is_open => return,
             Packet::Publish { key, bytes } => {
-                // Like zenoh's links: published messages never wait; a cut link queues as many as
-                // fit and loses the rest. Declarations and queries are kept.
+                // As with zenoh's links, published messages never wait; a cut link queues as many
+                // as fit and loses the rest. Declarations and queries are kept.
                 let is_full = self.is_stopped(link, up)
                     && self.links[link].direction(up).queue.len() >= self.conditions.queue;
                 if is_full
@@ -90,7 +90,7 @@ impl State {
         let wait = delay + self.draw(jitter);
         let arrival_ns = self.now_ns + nanos(wait);
         let direction = self.links[link].direction(up);
-        // TCP keeps the order; with jitter alone, a later packet could overtake.
+        // TCP keeps packets in order; with jitter alone, a later packet could overtake.
         let arrival_ns = arrival_ns.max(direction.last_ns);
         direction.last_ns = arrival_ns;
         direction.queue.push_back((arrival_ns, packet));
@@ -147,7 +147,7 @@ impl State {
             return;
         };
         if self.links[link].silent_since_ns[usize::from(up)].is_some() {
-            // Packets in flight also count as a sign of life.
+            // Packets in flight also count as signs of life.
             self.begin_lease(link, up, self.conditions.lease);
         }
         let direction = self.links[link].direction(up);
@@ -174,12 +174,12 @@ impl State {
             .collect()
     }
 
-    /// One side of these links receives nothing from now on.
+    /// From now on, one side of these links receives nothing.
     pub(crate) fn begin_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             for at_hub in [false, true] {
                 if self.links[link].silent_since_ns[usize::from(at_hub)].is_none() {
-                    // The last sign was up to a quarter of the lease ago.
+                    // The last sign of life was up to a quarter of the lease ago.
                     let wait = self
                         .conditions
                         .lease
@@ -190,7 +190,7 @@ impl State {
         }
     }
 
-    /// Ends the lease if an end of a link hears nothing for this long.
+    /// Ends the lease if one end of a link receives nothing for this long.
     fn begin_lease(&mut self, link: usize, at_hub: bool, wait: Duration) {
         let since_ns = self.now_ns;
         self.links[link].silent_since_ns[usize::from(at_hub)] = Some(since_ns);
@@ -218,7 +218,7 @@ impl State {
         }
     }
 
-    /// Both sides hear each other again: packets in flight continue, and a closed end notifies the
+    /// Both sides can receive again: packets in flight continue, and a closed end notifies the
     /// other.
     pub(crate) fn end_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
@@ -246,7 +246,7 @@ impl State {
                     self.put(link, up, Packet::Close);
                 }
                 // TCP retransmits at growing intervals: packets queued during a cut arrive some
-                // time after the cable is back.
+                // time after the cable is plugged in again.
                 let wait = self.draw(SENT_AGAIN);
                 if !self.is_stopped(link, up) && !self.links[link].direction(up).queue.is_empty() {
                     self.expect(link, up, self.now_ns + nanos(wait));
@@ -255,7 +255,7 @@ impl State {
         }
     }
 
-    /// Closes one end of a link, and discards what it learned over the link.
+    /// Closes one end of a link, and discards everything that this end learned over the link.
     pub(crate) fn close_end(&mut self, link: usize, at_hub: bool) {
         let leaf = self.links[link].leaf;
         if at_hub {
@@ -296,7 +296,8 @@ impl State {
         }
     }
 
-    /// Closes a session, or ends its process. The others learn of it after the packets sent before.
+    /// Closes a session, or ends its process. The others learn of this after earlier packets
+    /// arrive.
     pub(crate) fn close(&mut self, session: usize) {
         if !std::mem::replace(&mut self.sessions[session].is_open, false) {
             return;

@@ -52,7 +52,7 @@ pub(crate) enum Asked {
     Tokens,
 }
 
-/// The kinds of declarations, as the hub distinguishes them.
+/// The kinds of declarations, as distinguished by the hub.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Subscriber,

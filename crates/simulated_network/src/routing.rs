@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 impl State {
-    /// The other ends of the hub's links with a declaration of this kind that matches the key.
+    /// The other ends of those links of the hub that have a matching declaration of this kind.
     fn declared_beyond(
         &self,
         hub: usize,
@@ -86,8 +86,8 @@ impl State {
 
     /// Forwards a message to all leaves that have subscribed.
     fn forward(&mut self, hub: usize, key: &Arc<str>, bytes: &Arc<[u8]>, from: Option<usize>) {
-        // Never back over its incoming link, and once per link, however many subscribers are behind
-        // it, as zenoh does.
+        // Never back over the incoming link, and once per link, however many subscribers are behind
+        // it, as in zenoh.
         let mut to = self.declared_beyond(hub, Kind::Subscriber, key, from);
         to.dedup_by_key(|(link, _)| *link);
         for (link, _) in to {
@@ -220,7 +220,7 @@ impl State {
         }
     }
 
-    /// The tokens matching a key that a hub knows.
+    /// The tokens known to a hub that match a key.
     fn tokens(&self, hub: usize, key: &str, but: Option<usize>) -> Vec<String> {
         let own = self.sessions[hub]
             .declared
@@ -239,9 +239,9 @@ impl State {
         keys
     }
 
-    /// Notifies all watchers that a token has appeared at the hub or gone.
+    /// Notifies all watchers that a token has appeared at the hub or disappeared.
     pub(crate) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) {
-        // A leaf that came back may still be known by its old link.
+        // A returning leaf may still be known by its old link.
         if !is_there && self.tokens(hub, key, None).iter().any(|there| there == key) {
             return;
         }
@@ -282,7 +282,7 @@ impl State {
         }
     }
 
-    /// Discards all tokens that a leaf knows, after it has lost its link.
+    /// Discards all tokens known to a leaf that has lost its link.
     pub(crate) fn forget_tokens(&mut self, leaf: usize) {
         let watches = self.sessions[leaf]
             .declared
@@ -297,7 +297,7 @@ impl State {
             .for_each(|key| self.take_token(leaf, key, false));
     }
 
-    /// Discards all that the hub learned over a link.
+    /// Discards everything that the hub learned over a link.
     pub(crate) fn forget(&mut self, link: usize) {
         let hub = self.links[link].hub;
         let known = std::mem::take(&mut self.links[link].known);
@@ -324,7 +324,7 @@ impl State {
         }
     }
 
-    /// Starts a watch at a hub with the tokens present.
+    /// Starts a watch at a hub with the tokens that are present.
     pub(crate) fn begin_watch(&mut self, session: usize, watch: u64, key: &str) {
         for key in self.tokens(session, key, None) {
             self.at(
@@ -424,7 +424,7 @@ impl State {
     }
 }
 
-/// The call of a queryable.
+/// The call to a queryable.
 fn asking(take: &TakeQuery, session: usize, query: u64, key: String, payload: Parcel) -> Call {
     let take = Arc::clone(take);
     Box::new(move || {

@@ -20,11 +20,11 @@ pub struct Run {
     pub verdict: Verdict,
     /// The virtual time it took.
     pub time: Duration,
-    /// A hash over all events: the same for the same seed and nodes.
+    /// A hash over all events: it is the same for the same seed and nodes.
     pub trace: u64,
     /// All events, one per line, if requested.
     pub lines: Vec<String>,
-    /// The ends of nodes, in order.
+    /// How the nodes ended, in order.
     pub ends: Vec<NodeEnd>,
 }
 
@@ -32,13 +32,13 @@ pub struct Run {
 pub struct SimulatedNetwork(Arc<World>);
 
 impl SimulatedNetwork {
-    /// A network whose random choices all follow from `seed`.
+    /// A network whose random choices are all derived from `seed`.
     pub fn new(seed: u64, conditions: Conditions) -> SimulatedNetwork {
         bus::replace_runtime(&SimulatedRuntime);
         let state = State {
             conditions,
             // turmoil and madsim simulate tokio, whose sockets and tasks neither our nodes nor
-            // zenoh use; shuttle has no time, and our protocols rely on timeouts. Hence our own
+            // zenoh use; shuttle has no time, but our protocols rely on timeouts. Hence our own
             // network, beneath the same `Bus`.
             stream: Stream::new(seed, "network"),
             now_ns: 0,
@@ -59,7 +59,7 @@ impl SimulatedNetwork {
             on_take: None,
             verdict: Verdict::Ended,
             ends: vec![],
-            // With fixed keys, unlike `RandomState`: two runs of one seed are compared by this
+            // With fixed keys, unlike `RandomState`: two runs with one seed are compared by this
             // number.
             hash: DefaultHasher::new(),
             lines: None,
@@ -91,14 +91,14 @@ impl SimulatedNetwork {
         self.0.state.lock().at(nanos(at), Event::Fault(fault));
     }
 
-    /// Calls `see` with every message that the hub publishes or receives. It must not use the
+    /// Calls `see` with every message that the hub publishes or receives. `see` must not use the
     /// network.
     pub fn on_publish(&self, see: impl FnMut(Published<'_>) + Send + 'static) {
         self.0.state.lock().on_publish = Some(Box::new(see));
     }
 
     /// Calls `see` with every published message that reaches a leaf, and with the name of that
-    /// leaf's node. It must not use the network.
+    /// leaf's node. `see` must not use the network.
     pub fn on_take(&self, see: impl FnMut(Published<'_>) + Send + 'static) {
         self.0.state.lock().on_take = Some(Box::new(see));
     }

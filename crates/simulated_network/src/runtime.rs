@@ -38,7 +38,7 @@ impl Runtime for SimulatedRuntime {
         if !scheduler::is_inside() {
             return System.fill_random(bytes);
         }
-        // They follow from the seed; otherwise no game could be repeated.
+        // The bytes are derived from the seed; otherwise no game could be repeated.
         for part in bytes.chunks_mut(8) {
             let drawn = scheduler::random_number().unwrap_or_default().to_le_bytes();
             part.copy_from_slice(&drawn[..part.len()]);

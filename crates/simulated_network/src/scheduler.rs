@@ -1,5 +1,5 @@
-//! Chooses which thread runs: exactly one at a time. A thread yields when it waits; when all wait,
-//! the next event happens.
+//! Chooses the thread that runs: exactly one at a time. A thread yields when it waits; when all are
+//! waiting, the next event happens.
 
 use crate::event::{Event, nanos};
 use crate::state::{Node, State, Status, Thread};
@@ -64,7 +64,7 @@ pub(crate) fn now() -> Option<Instant> {
     CURRENT.with_borrow(|current| current.as_ref().map(|current| current.world.now()))
 }
 
-/// A random number that follows from the seed, inside a simulation.
+/// A random number derived from the seed, inside a simulation.
 pub(crate) fn random_number() -> Option<u64> {
     CURRENT.with_borrow(|current| {
         current
@@ -83,7 +83,7 @@ pub(crate) fn wake(address: usize) {
 }
 
 /// Waits until something at this address changes, or until `deadline` (`None`: no limit). Returns
-/// whether time is left. Does not wait in a thread that unwinds.
+/// whether time is left. Does not wait in an unwinding thread.
 pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     let Some(current) = current() else {
         return false;
@@ -92,8 +92,8 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     if thread::panicking() {
         return false;
     }
-    // On zenoh, a waiting callback blocks all links. Here it would deadlock: every test detects the
-    // mistake.
+    // In zenoh, a waiting callback blocks all links. Here it would deadlock, so that every test
+    // detects the mistake.
     assert!(!is_in_callback(), "callbacks must only hand over");
     let deadline_ns = deadline.map(|deadline| world.ns_at(deadline));
     world
@@ -103,7 +103,7 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     world.pass_on(current.thread);
     if world.state.lock().threads[current.thread].is_killed {
         // A killed node unwinds, which releases its locks and sockets. `panic` would print a report
-        // for each; `resume_unwind` does not.
+        // for each node; `resume_unwind` does not.
         resume_unwind(Box::new(Killed));
     }
     deadline.is_none_or(|deadline| world.now() < deadline)
@@ -189,7 +189,7 @@ impl World {
 
     fn await_turn(&self, me: usize) {
         while self.running.load(Ordering::Acquire) != me {
-            // In a loop, since `park` may return spuriously.
+            // In a loop, because `park` may return spuriously.
             thread::park();
         }
     }
@@ -209,7 +209,7 @@ impl World {
             let calls = std::mem::take(&mut state.calls);
             let to_drop = std::mem::take(&mut state.to_drop);
             drop(state);
-            // Dropping these may send, which would deadlock with the state locked.
+            // Dropping these may send a message, which would deadlock while the state is locked.
             drop(to_drop);
             IN_CALLBACK.set(true);
             calls.into_iter().for_each(|call| call());
@@ -306,7 +306,7 @@ impl State {
         }
     }
 
-    /// The names of the nodes that still run.
+    /// The names of the nodes that are still running.
     fn waiting(&self) -> Vec<String> {
         let is_there = |thread: &&Thread| thread.status != Status::Done;
         self.threads
@@ -320,7 +320,7 @@ impl State {
     fn give_up(&mut self, verdict: Verdict) {
         self.verdict = verdict;
         // Kills all nodes instead of leaving them waiting, so that their threads end and the test
-        // can report what they waited for.
+        // can report what they were waiting for.
         self.events.clear();
         self.starts_due = 0;
         (0..self.nodes.len()).for_each(|node| self.nodes[node].starts_again = None);
@@ -353,8 +353,8 @@ impl State {
         let drawn = match ready.as_slice() {
             [] => None,
             [one] => Some(*one),
-            // The choice is random: a real system promises no order either, and another seed
-            // exposes a game that depends on one.
+            // The choice is random: a real system does not guarantee any order either, and a
+            // different seed exposes a game that depends on one.
             several => Some(several[self.stream.below(several.len() as u64) as usize]),
         };
         self.ready = ready;

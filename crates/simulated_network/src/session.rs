@@ -12,11 +12,11 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// One message in this many is delayed before it is sent.
+/// Reciprocal of the fraction of messages that are delayed before sending.
 const PAUSES: u64 = 8;
 /// Prefix of the token keys of linked leaves, followed by the leaf's identifier.
 const LINKS: &str = "link/";
-/// Duration of an attempt to connect where no hub listens.
+/// Duration of an attempt to connect if no hub is listening.
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// A session of a simulated node.
@@ -27,7 +27,7 @@ pub(crate) struct SimulatedSession {
     id: String,
 }
 
-/// Sends on one key.
+/// Sends messages on one key.
 pub(crate) struct SimulatedSender {
     session: SimulatedSession,
     key: Arc<str>,
@@ -36,7 +36,7 @@ pub(crate) struct SimulatedSender {
 /// The answers to a query so far.
 #[derive(Default)]
 struct Answers {
-    /// In order of arrival; the querying session removes them.
+    /// In order of arrival; removed by the querying session.
     waiting: VecDeque<Parcel>,
     is_complete: bool,
 }
@@ -47,7 +47,7 @@ pub(crate) struct Undeclare {
     id: u64,
 }
 
-/// A query to be answered once.
+/// A query that is to be answered once.
 pub(crate) struct SimulatedQuery {
     world: Arc<World>,
     routed: RoutedQuery,
@@ -316,7 +316,7 @@ impl Sender for SimulatedSender {
 }
 
 impl SimulatedSender {
-    /// Pauses some of the time, as computation would.
+    /// Pauses occasionally, as if computing.
     fn pause_now_and_then(&self) {
         if is_in_callback() {
             return;

@@ -40,9 +40,9 @@ pub(crate) struct Thread {
     pub(crate) node: usize,
     pub(crate) handle: Option<JoinHandle<()>>,
     pub(crate) status: Status,
-    /// Whether it unwinds when it continues.
+    /// Whether it will unwind when it continues.
     pub(crate) is_killed: bool,
-    /// How often it has waited.
+    /// Number of times it has waited.
     pub(crate) waits: u64,
 }
 
@@ -81,7 +81,7 @@ pub(crate) struct State {
     pub(crate) limit_ns: u64,
     /// The number of the last event scheduled.
     pub(crate) order: u64,
-    /// By time and number: by time alone, one seed could give two traces.
+    /// By time and number: by time alone, one seed could give two different traces.
     pub(crate) events: BTreeMap<(u64, u64), Event>,
     pub(crate) starts_due: usize,
     pub(crate) nodes: Vec<Node>,
@@ -93,8 +93,8 @@ pub(crate) struct State {
     pub(crate) queries: BTreeMap<u64, PendingQuery>,
     /// Callbacks that are due, to be called while the state is unlocked.
     pub(crate) calls: Vec<Call>,
-    /// To be dropped while the state is unlocked: data held by callbacks may use the network on
-    /// drop.
+    /// To be dropped while the state is unlocked: dropping data held by callbacks may use the
+    /// network.
     pub(crate) to_drop: Vec<Declared>,
     /// The last number given to a declaration or a query.
     pub(crate) number: u64,
@@ -118,8 +118,8 @@ impl State {
 
     /// Adds an event to the trace.
     pub(crate) fn note(&mut self, what: &str, node: usize, key: &str, bytes: &[u8]) {
-        // Includes the bytes: a diverging game then shows in the first different message, not only
-        // at its end.
+        // Includes the bytes, so that a divergence shows in the first message that differs, not
+        // only at the end of the game.
         (self.now_ns, what, node, key, bytes).hash(&mut self.hash);
         if let Some(lines) = &mut self.lines {
             let at_s = self.now_ns as f64 * 1e-9;
@@ -178,7 +178,7 @@ impl State {
         }
     }
 
-    /// Ends the effects of a fault that is over.
+    /// Ends the effects of a fault.
     pub(crate) fn recover(&mut self, node: usize) {
         self.note("recovers", node, "", &[]);
         self.end_silence(node);

@@ -5,11 +5,11 @@ use std::time::Duration;
 /// How a simulation ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// All nodes ended by themselves.
+    /// All nodes ended on their own.
     Ended,
-    /// These nodes waited for something that could not happen.
+    /// These nodes were waiting for something that could not happen.
     Deadlock(Vec<String>),
-    /// These nodes still ran at the limit.
+    /// These nodes were still running at the limit.
     OutOfTime(Vec<String>),
     /// A node panicked.
     Panic(String),
@@ -31,7 +31,7 @@ pub struct NodeEnd {
 pub struct Published<'a> {
     /// Virtual time since the start.
     pub at: Duration,
-    /// The node that publishes it, or receives it.
+    /// The node that publishes or receives it.
     pub node: &'a str,
     /// Its key.
     pub key: &'a str,

@@ -23,7 +23,7 @@ pub enum Command {
         /// Rudder, per cent, positive to starboard.
         rudder: f64,
     },
-    /// The front seat steers this course.
+    /// The front seat steers this heading at this speed.
     Steer {
         /// Desired heading, rad clockwise from north.
         heading_rad: f64,
@@ -33,8 +33,8 @@ pub enum Command {
 }
 
 impl Command {
-    /// The columns of [`Command::Hold`], which needs none and is compatible with those of any
-    /// other.
+    /// The columns of [`Command::Hold`], which needs none and is compatible with the columns of any
+    /// other command.
     pub(crate) const NO_COLUMNS: [&str; 2] = ["", ""];
 
     /// The columns for a command of this kind.
@@ -69,8 +69,7 @@ impl Command {
 pub enum Pair {
     /// Shaft speeds of a boat with a propeller curve, rad/s.
     RadS,
-    /// Settings in per cent: of a thrust table's setting, or of full ahead or astern for a
-    /// propeller.
+    /// Settings in per cent: of a thrust table's setting, or of a propeller's full ahead or astern.
     Pct,
     /// Thrusts, N, converted to settings by the inverse thrust curve.
     Newton,
@@ -135,10 +134,10 @@ impl Engine {
         }
     }
 
-    /// The allowed range of each of the two columns, or why this boat does not accept them.
+    /// The allowed range of each of the two columns.
     ///
     /// # Errors
-    /// The boat's missing part, and the commands that it accepts.
+    /// If the boat does not accept them: its missing part, and the commands that it accepts.
     pub fn ranges(&self, pair: Pair) -> Result<[(f64, f64); 2], String> {
         match (self, pair) {
             (Engine::Thrusters(_, thruster), Pair::RadS) => match &thruster.curve {

@@ -1,4 +1,4 @@
-//! The drift of a free boat, which only the sea moves.
+//! The drift of a free boat, moved only by the sea.
 
 use super::manoeuvre::turned_rad;
 use super::sample::Sample;
@@ -35,13 +35,13 @@ impl Drift {
         self.velocity_m_s.length()
     }
 
-    /// The bearing it drifts to, rad; `None` if it does not move.
+    /// The bearing towards which it drifts, rad; `None` if it does not move.
     pub fn toward_rad(&self) -> Option<f64> {
         (self.speed_m_s() > STAYS_M_S).then(|| Ned::default().bearing_rad(self.velocity_m_s))
     }
 }
 
-/// A slower boat counts as stationary, m/s: a micrometre in a few minutes.
+/// Speed below which a boat counts as stationary, m/s: a micrometre in a few minutes.
 const STAYS_M_S: f64 = 1e-8;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Sea trials: one boat in open water, with a recorded series of commands or a standard manoeuvre.
 //!
-//! Open [`replay`] first. The command line handles files, units and plots; this crate handles the
+//! Read [`replay`] first. The command line handles files, units and plots; this crate handles the
 //! boat. [`identify`] fits a boat file to a recorded run.
 
 mod command;

@@ -1,4 +1,4 @@
-//! The standard manoeuvres: their commands and their ends.
+//! The standard manoeuvres: their commands, and when they end.
 //!
 //! Definitions follow IMO resolution MSC.137(76) and its explanatory notes MSC/Circ.1053, applied
 //! to boats that steer with two thrusters instead of a rudder: see [`Manoeuvre`].
@@ -23,7 +23,7 @@ pub enum Manoeuvre {
     /// From a straight approach, differential thrust (kinematic: rudder) is applied to starboard;
     /// each time the heading passes the angle on that side, it is reversed.
     Zigzag,
-    /// From a straight approach, full astern until the boat is dead in the water (which may itself
+    /// From a straight approach, full astern until the boat is dead in the water (which itself may
     /// drift).
     CrashStop,
     /// Full ahead from rest, until the speed is steady.
@@ -84,15 +84,15 @@ const LONGEST_S: f64 = 600.0;
 /// Default duration of drift and spin, s.
 const DRIFT_S: f64 = 300.0;
 const SPIN_S: f64 = 60.0;
-/// A zigzag is over after this many switches.
+/// Number of switches after which a zigzag is over.
 const SWITCHES: usize = 7;
-/// A boat below this fraction of the approach speed counts as dead in the water.
+/// Fraction of the approach speed below which a boat counts as dead in the water.
 pub(super) const DEAD: f64 = 0.01;
 /// The speed is steady when it changes by less than this fraction in [`STEADY_S`].
 const STEADY: f64 = 0.001;
 const STEADY_S: f64 = 10.0;
 
-/// Commands for turning and propulsion with any kind of engine.
+/// Commands for turning and propulsion with any type of engine.
 #[derive(Clone, Copy, Debug)]
 struct Helm {
     is_kinematic: bool,
@@ -101,8 +101,8 @@ struct Helm {
 }
 
 impl Helm {
-    /// Thrusters at these fractions, or half their sum as thrust and half their difference as
-    /// rudder.
+    /// Thrusters at these fractions; for a rudder boat, half their sum as thrust and half their
+    /// difference as rudder.
     fn apart(self, port: f64, starboard: f64) -> Command {
         if self.is_kinematic {
             return Command::Impose {
@@ -116,7 +116,7 @@ impl Helm {
         }
     }
 
-    /// Approach thrust with this much differential or rudder to starboard.
+    /// Approach thrust with this much differential thrust or rudder to starboard.
     fn turning(self, differential: f64) -> Command {
         if self.is_kinematic {
             return Command::Impose {
@@ -128,7 +128,7 @@ impl Helm {
     }
 }
 
-/// Performs `plan` with a boat at its start, pointing along the course.
+/// Performs `plan` with a boat at the start, pointing along the course.
 ///
 /// # Errors
 /// [`Unsound`] if the boat's state becomes non-finite.
@@ -172,7 +172,7 @@ pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sail
         }
         for _ in 0..per_row {
             if plan.manoeuvre == Manoeuvre::Zigzag {
-                // Unwrapped: a boat that spins has not returned to its course.
+                // Unwrapped, because a spinning boat has not returned to its course.
                 off_course_rad +=
                     wrap_pi(trial_boat.pose().psi_rad - plan.course_rad - off_course_rad);
                 if side * off_course_rad > plan.switch_rad {
@@ -278,7 +278,7 @@ fn is_steady(samples: &[Sample]) -> bool {
     after > 0.0 && (after - before).abs() < STEADY * after
 }
 
-/// The boat's turn since the first sample, including whole turns, rad clockwise, at each sample.
+/// The boat's turn (rad clockwise) since the first sample, including whole turns, at each sample.
 pub fn turned_rad(samples: &[Sample]) -> Vec<f64> {
     let mut turned = 0.0;
     let mut before = samples.first().map_or(0.0, |sample| sample.psi_rad);

@@ -55,14 +55,14 @@ fn along_and_across(plan: &Plan, at: Ned) -> (f64, f64) {
     )
 }
 
-/// The mean of `of` over samples; NaN for none.
+/// The mean of `of` over samples; NaN without samples.
 fn mean(samples: &[Sample], of: impl Fn(&Sample) -> f64) -> f64 {
     samples.iter().map(of).sum::<f64>() / samples.len() as f64
 }
 
-/// Advance, transfer and tactical diameter as in MSC.137(76): at a heading change of 90° and 180°,
-/// of midships, from the position where the thrusters were set. Steady values are means over the
-/// last whole turn.
+/// Advance, transfer and tactical diameter as in MSC.137(76): positions of the midship point at
+/// heading changes of 90° and 180°, relative to where the thrusters were set. Steady values are
+/// means over the last whole turn.
 fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let first = |angle_rad: f64| {
@@ -113,8 +113,8 @@ fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// The overshoot is the heading's excess over the angle after a switch, until the next one. The
-/// period is that of whole swings after the first switch.
+/// The overshoot is how far the heading exceeds the angle between a switch and the next one. The
+/// period is the mean over whole swings after the first switch.
 fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let switches = &sailed.switches;
@@ -158,8 +158,8 @@ fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// Head reach is along the course, track reach along the track, until the boat is dead in the
-/// water.
+/// Head reach is measured along the course, track reach along the track, until the boat is dead in
+/// the water.
 fn crash_stop(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let dead = |sample: &Sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s;
     let end = sailed.samples.iter().position(dead);
@@ -231,7 +231,7 @@ fn drift(sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// Rates and drift of the second half; the drift is that of the mean position, turn by turn.
+/// Rates and drift in the second half; the drift is that of the mean position, turn by turn.
 fn spin(sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let middle = sailed.samples.len() / 2;
@@ -243,7 +243,7 @@ fn spin(sailed: &Sailed) -> Vec<Measure> {
         .find(|sample| sample.nu.yaw.abs() >= 0.632 * rate_rad_s.abs());
     let sense = turned.last().map_or(1.0, |end| end.signum());
     let end = turned.last().map_or(0.0, |end| end.abs());
-    // The mean position and time of the whole turn that began this far before the end.
+    // The mean position and time of the whole turn that began this long before the end.
     let turn = |before_end: f64| {
         let range = end - before_end..=end - before_end + TAU;
         let inside = turned

@@ -4,13 +4,13 @@ use super::command::{Command, Engine, Pair};
 use super::sheet::{Mistake, Sheet};
 use primitives::SimTime;
 
-/// The longest trial, s: a day. Times count from the start of the trial.
+/// The longest trial (a day), s. Times are relative to the start of the trial.
 pub const LONGEST_S: f64 = 86_400.0;
 
-/// Commands, each of which is in force until the time of the next.
+/// Commands, each in force until the time of the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orders {
-    /// Rising times, each with its command.
+    /// Ascending times, each with its command.
     steps: Vec<(SimTime, Command)>,
 }
 
@@ -51,7 +51,7 @@ impl Orders {
         self.steps.last().map_or(SimTime::ZERO, |(at, _)| *at)
     }
 
-    /// The command at `now`: the last one not later; before the first, a hold.
+    /// The last command at or before `now`; before the first command, a hold.
     pub fn at(&self, now: SimTime) -> Command {
         let passed = self.steps.partition_point(|(at, _)| *at <= now);
         passed
@@ -60,11 +60,12 @@ impl Orders {
     }
 }
 
-/// The pair of command columns and their indices. In a trial's own file, which has another pair
-/// too, `port_newton,starboard_newton` are actual thrusts, not commands.
+/// The pair of command columns and their indices. In a trial's own file, which also has a different
+/// pair, `port_newton,starboard_newton` are actual thrusts, not commands.
 fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     let place = |head: &str| {
-        // The heading in a trial's own file is the actual one; the ordered one has its own column.
+        // The heading in a trial's own file is the actual one; the ordered heading has its own
+        // column.
         let told = if head == "heading_deg" {
             sheet.column("heading_order_deg")
         } else {

@@ -1,4 +1,4 @@
-//! Open-loop replay: a series of commands in, a boat's track out.
+//! Open-loop replay: turns a series of commands into a boat's track.
 
 use super::orders::Orders;
 use super::sample::Sample;
@@ -36,7 +36,7 @@ pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
 /// Simulates a boat with `orders` for `duration`. Returns a sample every [`ROW`], beginning with
 /// the start.
 ///
-/// A command is in force from the first tick that begins at its time or later.
+/// A command is in force from the first tick that does not begin before its time.
 ///
 /// # Errors
 /// [`Unsound`] if the boat's state becomes non-finite.

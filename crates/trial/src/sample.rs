@@ -24,7 +24,7 @@ pub const COLUMNS: [&str; 9] = [
 pub struct Sample {
     /// Time since the start of the trial, s.
     pub t_s: f64,
-    /// Position of midships relative to the start, m.
+    /// Position of the midship point relative to the start, m.
     pub at: Ned,
     /// Heading, rad clockwise from north.
     pub psi_rad: f64,
@@ -60,8 +60,8 @@ impl Sample {
     }
 }
 
-/// Writes samples as CSV: the columns of [`COLUMNS`] and, on request, those of the commands as
-/// given, in per cent or as speed and heading.
+/// Writes samples as CSV: the columns of [`COLUMNS`] and, on request, the columns of the commands
+/// as given, in per cent or as speed and heading.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -93,8 +93,8 @@ pub fn write_csv(
     writer.flush()
 }
 
-/// A number to its significant decimal places: a micrometre is far below any known accuracy of a
-/// boat.
+/// Formats a number with its significant decimal places: a micrometre is far below the known
+/// accuracy of any boat.
 fn text(number: f64, is_time: bool) -> String {
     decimal(number, if is_time { 3 } else { 9 })
 }

@@ -1,4 +1,4 @@
-//! A table from users: a line of names, then numbers. Errors give file, line and column.
+//! A table from users: a line of names, then numbers. Errors name the file, line and column.
 //!
 //! Reads the output of loggers and spreadsheets: columns separated by commas, semicolons or tabs,
 //! decimal commas, UTF-16, a line of units, and a last line truncated by a power loss.
@@ -7,7 +7,7 @@ use primitives::input_file::utf_8;
 use std::io::Read;
 use thiserror::Error;
 
-/// Maximum number of rows of a file: more than a day at 50 per second.
+/// Maximum number of rows in a file: more than a day at 50 per second.
 const ROWS_MAX: usize = 5_000_000;
 
 /// Maximum file size, bytes.
@@ -21,7 +21,7 @@ pub struct Sheet {
     /// Normalised names: lower case, with `_` between words.
     heads: Vec<String>,
     rows: Vec<(u64, csv::StringRecord)>,
-    /// Whether numbers have decimal commas: only where commas do not separate columns.
+    /// Whether numbers have decimal commas: possible only if commas do not separate columns.
     decimal_commas: bool,
     notes: Vec<Mistake>,
 }
@@ -29,13 +29,13 @@ pub struct Sheet {
 /// How cells without a value are spelt, in lower case.
 const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "null", "none"];
 
-/// A fault of a file.
+/// A fault in a file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{file}{}: {message}", line.map(|line| format!(":{line}")).unwrap_or_default())]
 pub struct Mistake {
     /// The file.
     pub file: String,
-    /// The line, if the fault is in one.
+    /// The line, if the fault is in a particular one.
     pub line: Option<u64>,
     /// The column, the value found and the allowed values.
     pub message: String,
@@ -144,23 +144,23 @@ impl Sheet {
         self.heads.iter().position(|known| known == head)
     }
 
-    /// The text in a row and column; the row must exist.
+    /// The content of a row and column; the row must exist.
     pub fn text(&self, row: usize, column: usize) -> &str {
         self.rows[row].1.get(column).unwrap_or_default()
     }
 
-    /// What was ignored when the file was read.
+    /// Notes on content that was ignored when the file was read.
     pub fn notes(&self) -> &[Mistake] {
         &self.notes
     }
 
-    /// Whether a cell is without a value: empty, NaN, N/A or the like.
+    /// Whether a cell has no value: empty, NaN, N/A or the like.
     pub fn is_missing(&self, row: usize, column: usize) -> bool {
         MISSING.contains(&self.text(row, column).to_lowercase().as_str())
     }
 
-    /// Whether a row (the first) contains the units of the columns. Its cells repeat the ends of
-    /// their names, or are empty.
+    /// Whether the (first) row contains the units of the columns: its cells are empty or repeat the
+    /// ends of the column names.
     fn are_units(&self, record: &csv::StringRecord, line: u64) -> Result<bool, Mistake> {
         let is_word = |cell: &str| {
             self.parse(cell).is_none() && !MISSING.contains(&cell.to_lowercase().as_str())
@@ -222,7 +222,7 @@ impl Sheet {
         }
     }
 
-    /// A fault of the file, or of one of its lines.
+    /// A fault in the file, or in one of its lines.
     pub fn mistake(&self, line: Option<u64>, message: String) -> Mistake {
         Mistake {
             file: self.file.clone(),
@@ -234,12 +234,12 @@ impl Sheet {
     /// The times in column `t_s`, strictly increasing, from 0 to `high_s`.
     ///
     /// # Errors
-    /// If they are not.
+    /// If they do not satisfy this.
     pub fn times(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
         self.times_from(high_s, |_| 0.0)
     }
 
-    /// Like [`Sheet::times`], counted from the first row, whose time may be that of any clock.
+    /// Like [`Sheet::times`], but relative to the first row, whose time may be from any clock.
     ///
     /// # Errors
     /// If they are not strictly increasing, or span more than `high_s`.
@@ -294,13 +294,13 @@ fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
             .count() as u64
 }
 
-/// What separates the columns: the commonest of comma, semicolon and tab in the first line.
+/// The column separator: the most frequent of comma, semicolon and tab in the first line.
 fn separator(bytes: &[u8]) -> u8 {
     let mut lines = bytes.split(|byte| *byte == b'\n');
     let header = lines
         .find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))
         .unwrap_or_default();
-    // Every other part is within quotes.
+    // Every other part is inside quotes.
     let plain = header.split(|byte| *byte == b'"').step_by(2);
     let count = |separator: u8| {
         plain
@@ -309,7 +309,7 @@ fn separator(bytes: &[u8]) -> u8 {
             .filter(|byte| **byte == separator)
             .count()
     };
-    // Of equally common separators, the last one is used.
+    // Of several equally frequent separators, the last is used.
     [b'\t', b';', b',']
         .into_iter()
         .max_by_key(|separator| count(*separator))
@@ -340,7 +340,7 @@ fn words(text: &str) -> String {
     words.join("_")
 }
 
-/// A unit as column names spell it.
+/// A unit as spelt in column names.
 fn plain_unit(unit: &str) -> &str {
     match unit {
         "n" | "newtons" => "newton",
@@ -350,7 +350,7 @@ fn plain_unit(unit: &str) -> &str {
     }
 }
 
-/// A limit in at most six digits, rather than 13.225999999999999.
+/// A limit with at most six digits, rather than 13.225999999999999.
 fn short(number: f64) -> String {
     let text = format!("{number:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -454,7 +454,7 @@ mod tests {
         }
     }
 
-    /// Each as some logger or spreadsheet writes it.
+    /// Each is in the format of some logger or spreadsheet.
     #[test]
     fn tables_of_other_programs_are_read() {
         let utf_16: Vec<u8> = "\u{feff}t_s\ta\r\n0\t1\r\n1,5\t3\r\n"

@@ -33,7 +33,7 @@ pub struct TrialBoat {
 }
 
 impl TrialBoat {
-    /// A boat at its start. `seed` selects the randomness of the sea and of its sensors.
+    /// A boat at its start. `seed` determines the randomness of the sea and of its sensors.
     pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> TrialBoat {
         let vehicle = VehiclePlan {
             name: "boat",
@@ -55,8 +55,8 @@ impl TrialBoat {
         });
         let mut psi_rad = start.psi_rad;
         if let Drive::Kinematic(kinematic) = &boat.drive {
-            // An order for two thrusters cannot express full thrust and half rudder: in a trial the
-            // loops of a kinematic boat are set directly. A test compares that with the world's
+            // An order for two thrusters cannot express full thrust and half rudder, so in a trial
+            // the loops of a kinematic boat are set directly. A test compares this with the world's
             // result.
             let mut state = world.state().clone();
             state.points[0] =
@@ -95,12 +95,12 @@ impl TrialBoat {
         self.world.state().boats[0].pose
     }
 
-    /// Sets a boat with thrusters to a measured position and motion; its thrusters stay unchanged.
+    /// Sets a boat with thrusters to a measured position and motion; its thrusters are unchanged.
     pub fn relocate(&mut self, pose: Pose, nu: Planar) {
         self.world.set_under_way(VehicleId(0), pose, nu);
     }
 
-    /// Advances it by one tick.
+    /// Advances the boat by one tick.
     pub fn step(&mut self, command: Command) {
         self.world.step(&[order(command)]);
         self.world.read_sensors();
@@ -155,7 +155,7 @@ fn point_at_start(kinematic: &Kinematic, start: &Start, current_m_s: Ned) -> Kin
     if start.nu == Planar::default() && start.thrust_pct.is_none() {
         return KinematicState::at_rest(start.psi_rad);
     }
-    // Speed is through the water; a boat without mass cannot drift sideways.
+    // Speed is through the water; a massless boat cannot drift sideways.
     let ahead_m_s = start.nu.surge - in_body(start.psi_rad, current_m_s).ahead;
     let speed_m_s = ahead_m_s.clamp(0.0, kinematic.speed_max_m_s);
     let thrust = start
@@ -169,7 +169,7 @@ fn in_body(psi_rad: f64, ned: Ned) -> Body {
 }
 
 /// A kinematic boat uses half the sum of two fractions as thrust and half their difference as
-/// rudder; full thrust and half rudder need a fraction beyond 1.
+/// rudder; full thrust with half rudder would need a fraction greater than 1.
 fn order(command: Command) -> Order {
     match command {
         Command::Thrust { port, starboard } => Order::Thrust { port, starboard },

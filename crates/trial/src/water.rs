@@ -6,8 +6,8 @@ use rules::Field;
 use rules::field::{Plan, Walls};
 use scenario::sea::{Current, Sea};
 
-/// Extent of the field each way, m. It limits only the places of random eddies; boats and the sea
-/// continue beyond it.
+/// Extent of the field in each direction, m. It limits only the positions of random eddies; boats
+/// and the sea continue beyond it.
 const FIELD_M: f64 = 1000.0;
 /// Density of sea water, kg/m³.
 const SEA_WATER_KG_M3: f64 = 1025.0;

@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let gateway = super::gateway_file(args.config.as_deref())?;
     let stop = stop::on_ctrl_c()?;
     let (sender, events) = sync_channel(4096);
-    // A full queue drops events: harmless, since this only listens.
+    // A full queue drops events, which is harmless when only listening.
     let take = move |event| drop(sender.try_send(event));
     let link = Link::open(
         &address,
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             counted(check)
         );
     }
-    // Before the search for the game, which takes time.
+    // Before the search for the game, because the search takes time.
     let host = HostTime {
         now: listener.now(),
         utc_ns: utc::now_ns(),
@@ -190,14 +190,14 @@ pub(super) struct Listener {
     events: Receiver<LinkEvent>,
     start: Instant,
     stop: Arc<AtomicBool>,
-    /// Why the boat cannot be reached, while it cannot.
+    /// Why the boat cannot be reached, if it cannot.
     reason: Option<String>,
-    /// Message printed when it connects.
+    /// Message printed when the boat connects.
     hello: String,
 }
 
 impl Listener {
-    /// Sends the queries for data that the boat sends only on request.
+    /// Sends queries for data that the boat sends only on request.
     fn ask(&mut self) {
         let now = self.now();
         let mut bytes = vec![];
@@ -242,7 +242,7 @@ impl Listener {
     }
 }
 
-/// The message counts of the link, as text.
+/// The message counts of the link, for display.
 fn counted(check: &SensorCheck) -> String {
     check
         .counts()

@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 
 /// Interval for reading this machine's registry and for looking for a missing game.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
-/// After this many attempts the session itself may be broken.
+/// Number of attempts after which the session itself may be broken.
 const ATTEMPTS: u64 = 20;
 /// The same timeouts as the page.
 const PATIENCE: Patience = Patience {
@@ -76,7 +76,7 @@ struct Line {
     words: Words,
 }
 
-/// The session in a game, with the game's name; `None` without a game.
+/// The session in a game, with the game's name; `None` if there is no game.
 type Session = Arc<Watched<Option<(Bus, GameName)>>>;
 
 /// State shared by all threads.
@@ -112,7 +112,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     console.read_lines();
     let left = console.client.finish(LAST);
     console.is_over.store(true, Ordering::Relaxed);
-    // Ignore the error: a thread that panicked prints no more.
+    // Ignore the error: a thread that panicked prints nothing more.
     drop(printing.join());
     console
         .client
@@ -132,7 +132,7 @@ impl Console {
     fn read_lines(&self) {
         let is_terminal = std::io::stdin().is_terminal();
         let (sender, lines) = std::sync::mpsc::channel();
-        // A thread waiting for a key cannot be ended; the process exits.
+        // A thread waiting for a key cannot be ended; it ends with the process.
         std::thread::spawn(move || {
             for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
                 if sender
@@ -270,7 +270,7 @@ impl Console {
                     session = None;
                 }
                 Err(missing) => {
-                    // Even a permanent error may end when another game replaces this one.
+                    // Even a permanent error may go away when a different game replaces this one.
                     let reason = missing.to_string();
                     if reason != said {
                         terminal::remark(&format!("no game: {reason}"));
@@ -361,7 +361,7 @@ fn show(news: &StopNews) {
     });
 }
 
-/// A state without the text in brackets.
+/// A state without the part in brackets.
 fn brief(state: &str) -> &str {
     state.split(" (").next().unwrap_or(state)
 }

@@ -1,4 +1,4 @@
-//! The gateway's log on the terminal: events line by line, the status as one line that is
+//! The gateway's log on the terminal: events line by line, and the status as one line that is
 //! overwritten.
 
 use command_line::printer::Printer;
@@ -88,7 +88,7 @@ pub fn state(text: &str) -> String {
     }
 }
 
-/// An event as text.
+/// An event as a line for display.
 pub fn text_of(event: &Event) -> String {
     match event {
         Event::State { from, to } => format!("{} (was {from})", state(to)),
@@ -164,7 +164,7 @@ fn geofence(report: &GeofenceReport) -> Option<String> {
     ))
 }
 
-/// The full status of a gateway as text.
+/// The full status of a gateway for display.
 pub fn full(status: &GatewayStatus) -> String {
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "unknown".to_owned());
     let nav = status.nav.map(|nav| {

@@ -1,4 +1,4 @@
-//! Missions in `.sea` files: the lines that are sent to a boat.
+//! Missions in `.sea` files: the lines to be sent to a boat.
 
 use anyhow::{Context, Result, anyhow};
 use gateway::nmea::{Command, Framer, Mode, Sentence, checksum};
@@ -18,13 +18,13 @@ pub(super) fn read(path: &Path) -> Result<Mission> {
     })
 }
 
-/// Parses the text of a mission file; the error names the line and the mistake.
+/// Parses the content of a mission file; an error names the line and the mistake.
 pub fn read_mission(text: &str) -> Result<Mission, String> {
     mission_of(text)
         .map_err(|(line, why)| line.map_or(why.clone(), |line| format!("line {line}: {why}")))
 }
 
-/// A mistake: its line, if it has one, and a description.
+/// A mistake: the line, if it is in one, and a description.
 type Mistake = (Option<usize>, String);
 
 /// The state defined by a mission's lines so far.
@@ -32,7 +32,7 @@ type Mistake = (Option<usize>, String);
 struct Lines {
     throttle_pct: Option<f64>,
     places: Vec<[f64; 2]>,
-    /// Number of mission lines so far: settings and places.
+    /// Number of mission lines so far: settings and waypoints.
     count: usize,
     /// The line that announces the number of mission lines to the boat, and that number.
     announced: Option<(usize, f64)>,
@@ -41,7 +41,7 @@ struct Lines {
 fn mission_of(text: &str) -> Result<Mission, Mistake> {
     let mut lines = Lines::default();
     for (i, line) in text.lines().enumerate() {
-        // Sentences may follow one another without a line break.
+        // Several sentences may be on one line.
         let mut sentences = line.trim().split('$');
         let before = sentences.next().unwrap_or_default();
         let wrong = |why: String| (Some(i + 1), why);

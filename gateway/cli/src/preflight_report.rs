@@ -1,4 +1,5 @@
-//! The report of a pre-flight check on disk: JSON for the gateway, with a text copy beside it.
+//! The report of a pre-flight check on disk: JSON for the gateway, with a plain-text copy next to
+//! it.
 
 use anyhow::{Context, Result};
 use gateway::preflight::Report;
@@ -7,7 +8,7 @@ use std::path::Path;
 /// Size limit of a report, bytes.
 const BYTES_MAX: u64 = 1 << 20;
 
-/// Writes a report and its text copy.
+/// Writes a report and its plain-text copy.
 pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
     let write = |path: &Path, text: &str| {
         primitives::output_file::write(path, text)

@@ -19,7 +19,7 @@ use std::time::Duration;
 
 /// Interval between stop commands.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Minimum duration of sending: one sentence may be lost.
+/// Minimum duration of sending, because single sentences may be lost.
 const SAY: Duration = Duration::from_millis(500);
 /// Timeout for a gateway that holds the link.
 const ANSWER: Duration = Duration::from_secs(1);
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let (sender, events) = sync_channel(EVENTS_MAX);
-    // A full queue drops events: the boat reports again.
+    // A full queue drops events: the boat will report again.
     let take = move |event| drop(sender.try_send(event));
     let settings = LinkSettings {
         silence: None,

@@ -155,7 +155,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
 
 /// Registers a gateway for operators on this machine, and tells them how to reach it.
 fn announce(entry: &GatewayEntry, for_parent: bool, log: &Log) -> Option<Registration> {
-    // If registration fails, operators must be given the address; nothing else is lost.
+    // If registration fails, operators must be given the address; nothing else is affected.
     let registered = bus::register_gateway(entry).inspect_err(|error| {
         log.remark(format!(
             "operators on this machine need the address: {error}"

@@ -13,14 +13,14 @@ use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 /// Timeout of a guided part, s.
 const LONGEST_S: f64 = 600.0;
-/// Above this deviation the compass should be corrected first, degrees.
+/// Deviation above which the compass should be corrected first, degrees.
 const DEVIATION_MAX_DEG: f64 = 14.0;
-/// Smallest thrust that counts, per cent.
+/// Minimum thrust that counts, per cent.
 const THRUST_MIN_PCT: f64 = 10.0;
 
 /// Asks questions at the terminal.
 pub(super) struct Guide {
-    /// Typed lines; `None` without a guide.
+    /// Typed lines; `None` if there is no guide.
     lines: Option<Receiver<String>>,
 }
 
@@ -154,8 +154,8 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     ) {
         return Check::not_done(name, "skipped");
     }
-    // Whether the boat reports its operator, whether that is the remote control, and thrust ahead
-    // and astern.
+    // Whether the boat reports its operator, whether the operator is the remote control, and thrust
+    // ahead and astern.
     let mut tells = false;
     let mut by_remote = false;
     let mut seen = [false; 2];

@@ -1,7 +1,7 @@
 //! `gateway tell`: sends an operator command to a boat's gateway.
 //!
-//! Stop commands take every path at once. Other commands go straight to the gateway's control port
-//! if it is known, and otherwise over the game's network. Commands for all boats take both routes.
+//! Stop commands use every path at once. Other commands go straight to the gateway's control port
+//! if it is known, and otherwise over the game's network. Commands for all boats use both.
 
 use super::log_line::full;
 use super::mission_file;
@@ -29,7 +29,7 @@ use std::time::Duration;
 pub(super) const ALL: &str = "all";
 /// Timeout for a gateway's control port.
 const PORT_ANSWER: Duration = Duration::from_secs(3);
-/// Timeout for the next answer of all.
+/// Timeout for the next answer to a command for all boats.
 const NEXT_ANSWER: Duration = Duration::from_secs(10);
 /// Timeout for boats to report that they have stopped.
 const STOP_MAX: Duration = Duration::from_secs(10);
@@ -179,7 +179,7 @@ fn ports(args: &Args) -> Result<Vec<Port>> {
     if let Some(at) = args.gateway
         && !ports.iter().any(|port| port.at == at)
     {
-        // The token of the game on this machine, if there is one.
+        // The token of the game on this machine, if any.
         let token = given.or_else(|| args.leaf.net().ok()?.token);
         ports.push(Port {
             vehicle: None,
@@ -190,7 +190,7 @@ fn ports(args: &Args) -> Result<Vec<Port>> {
     Ok(ports)
 }
 
-/// The known control ports that the arguments select.
+/// The known control ports selected by the arguments.
 fn ports_meant(args: &Args) -> Result<Vec<Port>> {
     let vehicle = &args.words.vehicle;
     let is_meant = |port: &Port| match args.gateway {
@@ -289,7 +289,7 @@ pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec
     })
 }
 
-/// Stops one boat or all on every known path, and prints what they report.
+/// Stops one boat or all boats on every known path, and prints the reports.
 fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     let target = (args.words.vehicle != ALL).then_some(args.words.vehicle.as_str());
     let ports = ports_meant(args)?;
@@ -299,7 +299,7 @@ fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
         client.add_gateway(port.at, port.vehicle.as_deref(), port.token.clone())?;
     }
     let no_game = Arc::new(OnceLock::new());
-    // A gateway given by address needs no game.
+    // A gateway specified by address needs no game.
     if target.is_none() || args.gateway.is_none() {
         if let Ok(net) = args.leaf.net()
             && net.keys.is_none()
@@ -373,9 +373,9 @@ fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()
     Ok(client.join(&observer.bus, &observer.game, &boats)?)
 }
 
-/// The result of one part of a command to all.
+/// The result of one part of a command to all boats.
 enum Outcome {
-    /// The game accepted the command, and with it all boats in it.
+    /// The game accepted the command, and so did all boats in it.
     Told,
     /// No game exists.
     NoGame(Error),

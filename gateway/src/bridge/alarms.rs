@@ -9,28 +9,28 @@ use crate::set_point::SetPoint;
 use primitives::SimTime;
 use primitives::angle::wrap_pi;
 
-/// A thruster ordered to at least this thrust must draw a current, per cent.
+/// Thrust order from which a thruster must draw a current, per cent.
 const ORDERED_MIN_PCT: f64 = 20.0;
-/// Index order of sides: port comes first everywhere.
+/// Order of the sides in all arrays: port first.
 const SIDES: [&str; 2] = ["port", "starboard"];
 
-/// Roll or pitch from which a boat may have capsized, degrees: waves do not hold it there ...
+/// Roll or pitch from which a boat may have capsized, degrees; waves do not hold it there ...
 const TILT_MAX_DEG: f64 = 60.0;
 /// ... for this long, s.
 const TILT_S: f64 = 3.0;
 
-/// A fault that counts once it has lasted for some time.
+/// A fault that counts only after a minimum duration.
 #[derive(Clone, Copy, Debug, Default)]
 struct Alarm {
-    /// Start of the unbroken fault, and its newest size.
+    /// When the current fault began, and its latest size.
     since: Option<(SimTime, f64)>,
-    /// Whether the fault has outlasted the debounce and has been reported.
+    /// Whether the fault has outlasted the debounce time and has been reported.
     is_told: bool,
 }
 
 impl Alarm {
-    /// Records the size of the current fault, if any. Returns a warning with this text when it has
-    /// lasted for `debounce_s`, and a remark with its name when it ends.
+    /// Records the size of the current fault, if any. Returns `text` as a warning once the fault
+    /// has lasted for `debounce_s`, and a remark with its name when it ends.
     fn note(
         &mut self,
         now: SimTime,
@@ -38,8 +38,8 @@ impl Alarm {
         debounce_s: f64,
         (text, name): (impl Fn(f64) -> String, &str),
     ) -> Option<Event> {
-        // Keep the time of the first report and the size of the newest, so that the text
-        // follows the pump during the debounce.
+        // Keep the time of the first report and the latest size, so that the warning follows the
+        // pump during the debounce time.
         self.since = size.map(|size| (self.since.map_or(now, |(since, _)| since), size));
         let lasts = self
             .since
@@ -58,7 +58,7 @@ impl Alarm {
     }
 }
 
-/// What is wrong with a current.
+/// A fault of a thruster current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wrong {
     Bilge,
@@ -69,7 +69,7 @@ enum Wrong {
 const WRONGS: [Wrong; 3] = [Wrong::Bilge, Wrong::TooMuch, Wrong::TooLittle];
 
 impl Wrong {
-    /// Text for operators: the fault on a side, and its meaning.
+    /// Description for operators: the fault on a side, and its meaning.
     fn words(self) -> [&'static str; 2] {
         match self {
             Wrong::Bilge => ["bilge pump is running", "the boat is taking on water"],
@@ -83,18 +83,18 @@ impl Wrong {
 #[derive(Clone, Debug)]
 pub(super) struct Alarms {
     watch: CurrentWatch,
-    /// The error that the boat reports now.
+    /// The error that the boat currently reports.
     error: Option<String>,
     /// The last notice from the boat.
     notice: Option<String>,
-    /// The present tilt, degrees.
+    /// The current tilt, degrees.
     tilt: Alarm,
     /// Abnormal thruster currents, A, by fault (order of `WRONGS`), then side (port first).
     currents: [[Alarm; 2]; 3],
 }
 
 impl Alarms {
-    /// No alarms: nothing has been received yet.
+    /// The state before any report: no alarms.
     pub(super) fn new(watch: CurrentWatch) -> Alarms {
         Alarms {
             watch,
@@ -113,7 +113,7 @@ impl Alarms {
         }
     }
 
-    /// Records a one-off notice from the boat. A repeated text is not reported again.
+    /// Records a one-off notice from the boat. A repeated notice is not reported again.
     pub(super) fn take_notice(&mut self, text: String, events: &mut Vec<Event>) {
         if self.notice.as_ref() != Some(&text) {
             events.push(Event::Warning(format!("the boat reports {text:?}")));
@@ -121,7 +121,7 @@ impl Alarms {
         }
     }
 
-    /// Checks roll and pitch, degrees.
+    /// Checks roll and pitch (degrees).
     pub(super) fn take_tilt(&mut self, now: SimTime, tilt_deg: [f64; 2], events: &mut Vec<Event>) {
         let tilt_deg = tilt_deg.map(|deg| wrap_pi(deg.to_radians()).to_degrees().abs());
         let tilt_deg = tilt_deg[0].max(tilt_deg[1]);
@@ -157,7 +157,7 @@ impl Alarms {
         }
     }
 
-    /// The current, A, if it shows this fault.
+    /// The current, A, if it shows the given fault.
     fn found(
         &self,
         wrong: Wrong,
@@ -175,11 +175,11 @@ impl Alarms {
                 here.filter(|amps| watch.thruster_max_a > 0.0 && amps.abs() > watch.thruster_max_a)
             }
             Wrong::TooLittle => {
-                // Boats without current sensors report zeros; a current on the other side proves
-                // that this boat measures.
+                // Boats without current sensors report zeros; a current on the other side shows
+                // that the boat has sensors.
                 let is_measured = there.is_some_and(|amps| amps.abs() > watch.thruster_min_a);
-                // In a turn one side may have zero thrust and draw nothing, so a silent side means
-                // something only if both are ordered.
+                // In a turn one side may have zero thrust and draw nothing, so a side without
+                // current is a fault only if both sides are ordered to run.
                 let is_ordered = ordered
                     .is_some_and(|sides| sides.iter().all(|pct| pct.abs() >= ORDERED_MIN_PCT));
                 here.filter(|amps| amps.abs() < watch.thruster_min_a && is_measured && is_ordered)
@@ -187,7 +187,7 @@ impl Alarms {
         }
     }
 
-    /// The active alarms as texts.
+    /// Descriptions of the active alarms.
     pub(super) fn texts(&self) -> Vec<String> {
         let error = self.error.as_deref().map(error_text).into_iter();
         let currents = WRONGS

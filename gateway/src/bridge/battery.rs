@@ -5,7 +5,7 @@ use crate::lithium;
 use crate::protocol::Power;
 use primitives::SimTime;
 
-/// Warn if the boat has not reported its battery for this long, s.
+/// Silence of the battery before a warning, s.
 pub(super) const SILENCE_S: f64 = 10.0;
 
 /// The latest battery reports.
@@ -23,7 +23,7 @@ pub(super) struct BatteryLog {
 }
 
 impl BatteryLog {
-    /// No data yet, on a new link.
+    /// No data yet: the link is new.
     pub(super) fn new(watch: BatteryWatch, now: SimTime) -> BatteryLog {
         BatteryLog {
             watch,
@@ -35,15 +35,15 @@ impl BatteryLog {
     }
 
     pub(super) fn observe(&mut self, now: SimTime, power: &Power) {
-        // Any battery sentence ends the silence, even without a voltage: the warning is about a
-        // boat that does not report.
+        // Any battery sentence ends the silence, even without a voltage: the warning concerns boats
+        // that do not report at all.
         self.silence = (now, false);
         self.left_pct = power.left_pct.or(self.left_pct);
         if let Some(volts) = power.volts {
             self.volts = Some((now, volts));
             let low = volts < self.watch.volts_min;
-            // Voltage sags under thrust: the debounce keeps a burst of full power from ending the
-            // game.
+            // Voltage sags under thrust. The debounce time keeps a burst of full power from ending
+            // the game.
             self.low_since = low.then(|| self.low_since.unwrap_or(now));
         }
     }
@@ -68,7 +68,7 @@ impl BatteryLog {
     /// Returns true once when a monitored battery falls silent.
     pub(super) fn falls_silent(&mut self, now: SimTime) -> bool {
         let (since, said) = self.silence;
-        // A limit of zero switches the monitor off, and this warning with it.
+        // A limit of zero disables the monitor and this warning.
         let silent = self.watch.volts_min > 0.0 && (now - since).as_s() > SILENCE_S;
         self.silence.1 |= silent;
         silent && !said

@@ -1,7 +1,7 @@
-//! Compares the commands that a boat echoes with those that it was sent.
+//! Compares the commands that a boat echoes with those sent to it.
 //!
 //! A boat that keeps echoing an outdated command no longer listens. If it has echoed our commands
-//! and then echoes one that it was never sent, someone else is sending it orders at the same port.
+//! and then echoes one that we never sent, someone else is commanding it through the same port.
 
 use crate::config::ControlWatch;
 use crate::nmea::Mode;
@@ -10,11 +10,11 @@ use primitives::SimTime;
 use primitives::angle::wrap_pi;
 use std::collections::VecDeque;
 
-/// Tolerances for equal speeds and headings in mode G, kn and degrees: ArduPilot drops all decimal
-/// places.
+/// Tolerances for equal speeds and headings in mode G, kn and degrees: ArduPilot truncates all
+/// decimals.
 const SAME_SPEED_KN: f64 = 0.1;
 const SAME_HEADING_DEG: f64 = 1.1;
-/// If the boat drops from our commands to standby this many times within this period, s, and
+/// If the boat drops out of our mode to standby this many times within this period (s), and
 /// recovers in between, someone else is sending it standby.
 const DEPARTURES: usize = 2;
 const DEPARTURES_S: f64 = 5.0;
@@ -39,7 +39,7 @@ impl Shown {
         self.mode == shown.mode
             && match self.mode {
                 Mode::Thruster => {
-                    // The heading does not count in mode T: a boat that steers no heading reports
+                    // The heading is not compared in mode T: a boat that steers no heading reports
                     // its actual one.
                     within(self.thrust, shown.thrust, thrust_pct)
                         && within(self.difference, shown.difference, thrust_pct)
@@ -61,12 +61,12 @@ pub(super) struct CommandEcho {
     /// Commands that the boat may still echo, and when each was first sent; newest last.
     sent: VecDeque<(SimTime, Shown)>,
     last: Option<Shown>,
-    /// Whether the boat's last report echoed one of our commands; whether any report has, and any
-    /// with a set-point.
+    /// Whether the last report echoed one of our commands, whether any report has, and whether any
+    /// has echoed a set-point of ours.
     is_ours: bool,
     has_shown: bool,
     has_shown_set_point: bool,
-    /// Start of the period in which it has echoed a set-point that matches none of them.
+    /// Start of the period in which the boat has echoed a set-point that matches none of ours.
     unlike_since: Option<SimTime>,
     departures: VecDeque<SimTime>,
     foreign_at: Option<SimTime>,
@@ -94,7 +94,7 @@ impl CommandEcho {
         if self.sent.back().is_none_or(|(_, last)| *last != shown) {
             self.sent.push_back((now, shown));
         }
-        // A command counts until its successor has been out for the longest echo delay.
+        // A command may be echoed until its successor is older than the longest echo delay.
         let is_over = |(next, _): &(SimTime, Shown)| (now - *next).as_s() > self.watch.echo_s;
         while self.sent.get(1).is_some_and(is_over) || self.sent.len() > SENT_MAX {
             self.sent.pop_front();
@@ -108,7 +108,7 @@ impl CommandEcho {
 
     /// Checks a report of the boat; called only while we command it.
     pub(super) fn observe(&mut self, now: SimTime, mut shown: Shown) {
-        // A boat that has never echoed a nonzero heading of ours may report 0 for all of them.
+        // A boat that has never echoed a nonzero heading may report 0 for all headings.
         shown.heading_deg = shown
             .heading_deg
             .filter(|deg| *deg != 0.0 || self.has_shown_set_point);
@@ -155,9 +155,9 @@ impl CommandEcho {
         }
     }
 
-    /// Whether thrust and difference lie between the last reported and the last sent values. This
-    /// is the case for a boat that reports the applied thrust, which lags, instead of its command.
-    /// Another gateway's set-points jump.
+    /// Whether thrust and difference lie between the last reported and the last sent values, as on
+    /// a boat that reports the applied thrust, which lags, instead of the commanded one. Set-points
+    /// of another gateway jump.
     fn is_on_its_way(&self, shown: &Shown) -> bool {
         let Some(last) = self
             .last
@@ -211,8 +211,8 @@ mod tests {
         }
     }
 
-    /// The verdict when the boat shows these thrusts, ten a second, after 20 % and then 60 % were
-    /// sent.
+    /// The verdict when the boat shows these thrusts, ten a second, after commands of 20 % and then
+    /// 60 %.
     fn found(shows: &[f64]) -> (bool, bool) {
         let mut echo = CommandEcho::new(crate::config::default_gateway().control);
         let at = |tenth: usize| SimTime::from_s(0.1 * tenth as f64);

@@ -1,4 +1,4 @@
-//! The present conditions of a bridge, by which the supervisor decides.
+//! The current conditions of a bridge, from which the supervisor decides.
 
 use super::Bridge;
 use super::on_site::OnSite;

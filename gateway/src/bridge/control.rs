@@ -7,7 +7,7 @@ use crate::protocol::{ControlReport, Shown};
 use crate::supervisor::ControlFault;
 use primitives::SimTime;
 
-/// The boat's last control report, and the one expected of it.
+/// The boat's last control report, and the expected one.
 #[derive(Clone, Debug)]
 pub(super) struct ControlLog {
     watch: ControlWatch,
@@ -15,7 +15,7 @@ pub(super) struct ControlLog {
     reported: Option<(SimTime, ControlReport)>,
     /// The mode last sent to the boat.
     sent: Option<Mode>,
-    /// Start of the period in which it has reported a different mode.
+    /// Start of the period in which the boat has reported a different mode.
     mismatch_since: Option<SimTime>,
     pub(super) echo: CommandEcho,
 }
@@ -37,8 +37,8 @@ impl ControlLog {
         if operator.is_none_or(|operator| operator == Operator::Secondary) {
             self.echo.observe(now, shown);
         } else {
-            // Under another operator the boat correctly echoes that operator's commands; discard
-            // what was learned about ours.
+            // Under another operator's control, the boat correctly echoes that operator's commands:
+            // discard what was learned from echoes of ours.
             self.echo = CommandEcho::new(self.watch);
         }
         let mismatch = self.sent.is_some_and(|sent| sent != shown.mode);
@@ -53,7 +53,7 @@ impl ControlLog {
             self.sent = Some(mode);
             let matches = self.mode() == Some(mode);
             // The clock starts when the mode is ordered, not when the boat first reports a
-            // different one: a boat that reports rarely must not get a second echo time for free.
+            // different one: a boat that reports rarely must not get twice the echo time.
             self.mismatch_since = (!matches).then_some(now);
         }
     }
@@ -73,7 +73,7 @@ impl ControlLog {
         self.reported.and_then(|(_, report)| report.operator)
     }
 
-    /// The mode that the boat has reported, instead of the mode sent, for longer than `echo_s`.
+    /// The mode that the boat has reported for longer than `echo_s` instead of the one sent.
     pub(super) fn mode_mismatch(&self, now: SimTime) -> Option<Mode> {
         let since = self.mismatch_since?;
         let (at, report) = self.reported?;
@@ -83,8 +83,8 @@ impl ControlLog {
 
     /// Why we do not command the boat now, according to its reports.
     pub(super) fn fault(&self, now: SimTime) -> Option<ControlFault> {
-        // Some boats report no operator. Their owner can declare in the file that the gateway
-        // commands them; otherwise silence means that someone else may command it.
+        // Some boats report no operator. For these, the owner can declare in the file that the
+        // gateway commands them; otherwise silence means that someone else may command it.
         let silent = (!self.watch.assumed).then_some(ControlFault::Unknown);
         let Some((at, report)) = self.reported else {
             return silent;
@@ -97,7 +97,7 @@ impl ControlLog {
             operator == Operator::Secondary
         });
         match (report.operator, self.mode_mismatch(now)) {
-            // Check foreign orders first: a boat with two masters also disobeys and seems not to
+            // Check foreign orders first: a boat under two masters also seems to disobey or not to
             // receive, and the operator must learn that there is another gateway.
             _ if is_ours && self.echo.is_foreign(now) => Some(ControlFault::ForeignOrders),
             (_, None) if is_ours && self.echo.is_deaf(now) => Some(ControlFault::Deaf),

@@ -17,12 +17,12 @@ pub struct Plan {
     pub vehicle: String,
     /// How the boat is driven and stopped.
     pub gateway: Gateway,
-    /// The boat's site, if it is known from the beginning; otherwise [`Input::Site`] supplies it.
+    /// The boat's site, if known from the start; otherwise [`Input::Site`] supplies it.
     #[serde(flatten)]
     pub site: Option<Site>,
     /// Whether the bridge arms once without a request, as soon as it is ready.
     pub arms_itself: bool,
-    /// Whether to send the boat nothing but standby, whatever the orders.
+    /// Whether to send the boat only standby, whatever the orders.
     #[serde(default)]
     pub dry_run: bool,
     /// Whether the pre-flight check allows arming.
@@ -31,7 +31,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// A boat without a site yet, which is armed by an operator and needs no pre-flight check.
+    /// A boat that has no site yet, is armed by an operator and needs no pre-flight check.
     pub fn new(vehicle: &str, gateway: Gateway) -> Plan {
         let vehicle = vehicle.to_owned();
         let preflight = Preflight::NotRequired;
@@ -57,12 +57,12 @@ pub enum Preflight {
     Passed,
     /// This person takes responsibility for arming without a report.
     WaivedBy(String),
-    /// The report is missing, for this reason.
+    /// The report is missing, for the given reason.
     Missing(String),
 }
 
 impl Preflight {
-    /// What prevents arming, if anything.
+    /// The obstacle to arming, if any.
     pub(crate) fn missing(&self) -> Option<&String> {
         if let Preflight::Missing(why) = self {
             Some(why)
@@ -72,7 +72,7 @@ impl Preflight {
     }
 }
 
-/// What only a game defines: the boat's field and properties in it.
+/// Properties that only a game defines: the field, and the boat's properties in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Site {
     /// The field in which the boat plays.
@@ -95,21 +95,21 @@ pub enum Input {
     /// The link is down.
     LinkDown,
     /// Bytes from the boat.
-    // Recorded separately, as messages of the link with their direction: as JSON numbers they would
-    // take four times the space.
+    // Recorded separately, as link messages with a direction: JSON numbers would take four times
+    // the space.
     #[serde(skip)]
     Bytes(Vec<u8>),
-    /// The sim has admitted the boat: earlier orders are ignored.
+    /// The sim has admitted the boat; earlier orders are ignored.
     Joined,
     /// An order, and the time of the picture that it answers.
-    // The picture's time, not the message's, makes an order fresh: a sim that repeats itself keeps
-    // no boat moving.
+    // The picture's time, not the message's, decides whether an order is fresh: a sim that repeats
+    // itself must not keep a boat moving.
     Order(Order, SimTime),
     /// An unreadable order.
     BadOrder,
-    /// An order with a time that the game has not reached.
+    /// An order whose time the game has not yet reached.
     OrderAhead,
-    /// An order from before the boat joined.
+    /// An order from before the boat's admission.
     OldOrder,
     /// Positions of the other real boats.
     Others(Vec<Ned>),
@@ -119,7 +119,7 @@ pub enum Input {
     Fleet(FleetCommand),
     /// A game was found that defines the boat's site.
     Site(Box<Site>),
-    /// The gateway was not running for this long, s; its guard may have stopped the boat.
+    /// The gateway was not running for this time, s; its guard may have stopped the boat.
     Hung(f64),
     /// Time has passed.
     Tick,
@@ -136,7 +136,7 @@ pub struct Output {
     pub events: Vec<Event>,
     /// Why an operator's request was refused.
     pub refused: Option<String>,
-    /// Whether the bytes carry an order for the first time.
+    /// Whether the bytes contain an order that is sent for the first time.
     pub carries_order: bool,
     /// Whether the bytes stop the boat.
     pub stops: bool,
@@ -168,6 +168,6 @@ pub enum Event {
     Blocked(bool),
     /// A warning for the operator.
     Warning(String),
-    /// A log message of the node around the bridge.
+    /// A log message from the node that runs the bridge.
     Remark(String),
 }

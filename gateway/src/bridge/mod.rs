@@ -45,7 +45,7 @@ use std::collections::VecDeque;
 
 /// Minimum interval between two new orders, s.
 const GAP_MIN_S: f64 = 0.045;
-/// A task that the boat does not report is sent again after this time, s.
+/// Time after which a task that the boat does not report is sent again, s.
 const TASK_AGAIN_S: f64 = 1.0;
 /// Interval between reports of invalid navigation, s.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
@@ -72,9 +72,9 @@ pub struct Bridge {
     /// How long the gateway was not running before this input, s.
     hung_s: Option<f64>,
     order: Option<CurrentOrder>,
-    /// Whether the order has not been sent yet.
+    /// Whether the order still has to be sent.
     order_is_new: bool,
-    /// When an order was last sent for the first time.
+    /// When a new order was last sent.
     order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
     battery: BatteryLog,
@@ -88,7 +88,7 @@ pub struct Bridge {
     words: VecDeque<SwitchWord>,
     /// The last command that a dry run would have sent.
     would_send: Option<Command>,
-    /// Whether the boat may be moving because of a command of ours.
+    /// Whether the boat may be moving because of one of our commands.
     under_way: bool,
     /// The conditions of the last step.
     conditions: Conditions,
@@ -151,7 +151,7 @@ impl Bridge {
         self.supervisor.state()
     }
 
-    /// Processes one input and performs what is due.
+    /// Processes one input and performs the actions that are due.
     pub fn process(&mut self, now: SimTime, input: &Input, out: &mut Output) {
         let mut request = None;
         self.hung_s = None;
@@ -161,7 +161,7 @@ impl Bridge {
             Input::Bytes(bytes) => self.read(now, bytes, out),
             Input::Site(site) => self.on_site = Some(OnSite::new(&self.plan.gateway, site)),
             Input::Hung(seconds) => self.hung_s = Some(*seconds),
-            // The previous sim's order may answer a picture of another game. The boat stops until
+            // The previous sim's order may answer a picture from another game. The boat stops until
             // the new sim sends an order.
             Input::Joined => self.order = None,
             Input::Order(order, given) => self.take_order(now, *order, *given),
@@ -194,7 +194,7 @@ impl Bridge {
         }
         if request.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
             // Any other request ends an upload, above all an E-stop: a boat that waits for more
-            // lines might take the next command for one.
+            // lines might read the next command as one.
             self.cancel_upload(now, out);
         }
         self.advance(now, request, out);
@@ -309,8 +309,9 @@ impl Bridge {
             self.counters.bad_orders += 1;
             return;
         };
-        // No order can answer a picture before the first. A newer picture makes an order fresh, not
-        // its arrival: a sim that repeats itself must keep no boat moving.
+        // No order can answer a picture that precedes the first one. An order is fresh if its
+        // picture is newer, not because it has just arrived: a sim that repeats itself must not
+        // keep a boat moving.
         let newer = given > self.order.map_or(SimTime::ZERO, |current| current.given);
         if newer {
             self.counters.orders += 1;
@@ -349,13 +350,13 @@ impl Bridge {
             }
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
             (_, Some(outside)) => Err(outside),
-            // A disarm request leaves the change of state to the supervisor: the boat must rest
-            // during the upload, which takes seconds.
+            // The request becomes a disarm, so that the supervisor changes the state: the boat must
+            // rest during the upload, which takes seconds.
             _ => self.protocol.begin_upload(now, mission),
         };
         match begun {
             Ok(()) => {
-                // The upload makes the boat forget its previous point.
+                // The boat forgets its previous recovery point during the upload.
                 self.recovery_point = RecoveryPoint::Uploading(mission.erp, false);
                 Some(OperatorRequest::Disarm)
             }
@@ -399,8 +400,8 @@ impl Bridge {
         ) {
             self.recovery_point = RecoveryPoint::default();
         }
-        // Send a change at once, between two repetitions: at 10 Hz a stop would otherwise wait 100
-        // ms.
+        // Send a change at once, without waiting for the next repetition: at 10 Hz a stop would be
+        // delayed by up to 100 ms.
         let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.protocol.abort_upload();
@@ -465,7 +466,7 @@ impl Bridge {
                         .map_or(task, |site| site.by_compass(task)),
                 );
                 let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
-                // If sent again, this task would restart.
+                // The task would restart if sent again.
                 if self.last_sent.as_ref().is_some_and(|(at, last)| {
                     *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
                 }) {
@@ -484,8 +485,8 @@ impl Bridge {
         } else {
             command
         };
-        // Thrust goes to zero before any command that is not our own set-point. How a Surveyor
-        // treats its last thrust when it leaves mode T is not published.
+        // Set thrust to zero before any command that is not our own set-point. It is not published
+        // how a Surveyor treats its last thrust when it leaves mode T.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
             self.protocol.write(now, Command::Zero, &mut out.bytes);
@@ -538,7 +539,7 @@ impl Bridge {
         }
     }
 
-    /// Warns once if a boat that is sent standby reports that it is driven.
+    /// Warns once if a boat that is sent standby reports that it is being driven.
     fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
         // Under another operator's control this is correct.
         let ours = matches!(

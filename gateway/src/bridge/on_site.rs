@@ -33,7 +33,7 @@ impl OnSite {
             ..
         } = gateway;
         let frame = LocalFrame::new(site.field.plan.datum);
-        // Correction to add to a heading of the boat to make it true, rad.
+        // Correction that turns a heading of the boat into a true heading, rad.
         let compass_to_true_rad = match (protocol, compass) {
             (BoatProtocol::Surveyor, CompassFrame::Magnetic) => site.declination_rad,
             // MAVLink boats report and receive true headings.
@@ -47,8 +47,8 @@ impl OnSite {
         }
     }
 
-    /// The first part of a mission outside the geofence, if any: a waypoint, a leg, or the way to
-    /// the first waypoint.
+    /// The first part of a mission that is outside the geofence, if any: a waypoint, a leg, or the
+    /// way to the first waypoint.
     pub(super) fn outside(&self, now: SimTime, mission: &Mission) -> Option<String> {
         // The upload rejects invalid positions with a better reason.
         let on_globe =
@@ -62,8 +62,8 @@ impl OnSite {
             return Some("one of its waypoints is outside the geofence".to_owned());
         }
         let boat = self.estimator.nav(now).map(|(nav, _)| nav.at());
-        // The way from the boat to the first waypoint is a leg as well: the boat goes there by
-        // itself, whatever lies between.
+        // The way to the first waypoint is a leg, too: the boat drives straight there, whatever
+        // lies between.
         let way: Vec<Ned> = boat
             .into_iter()
             .chain(mission.waypoints.iter().filter(on_globe).map(place))
@@ -88,8 +88,7 @@ impl OnSite {
     pub(super) fn is_way_to(&self, now: SimTime, [lat_deg, lon_deg]: [f64; 2]) -> bool {
         let erp = self.estimator.place(lat_deg, lon_deg);
         let from = self.estimator.nav(now).map_or(erp, |(nav, _)| nav.at());
-        // From outside the fence the way in is allowed: that is when a recovery point is needed
-        // most.
+        // From outside, the way back in is allowed: that is when a recovery point is needed most.
         self.geofence.area.leads_in(from, erp)
     }
 

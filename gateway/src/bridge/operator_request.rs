@@ -4,8 +4,7 @@ use super::Bridge;
 use crate::supervisor::{OperatorRequest, Scope, Task};
 use messages::external::{BoatMode, OperatorCommand};
 
-/// The request that a command makes to the supervisor; `None` if it makes none, or if the request
-/// depends on the boat.
+/// The supervisor request for a command; `None` if there is none, or if it depends on the boat.
 pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {
     match command {
         OperatorCommand::Arm => Some(OperatorRequest::Arm),
@@ -14,14 +13,15 @@ pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest>
         OperatorCommand::Release => Some(OperatorRequest::Release(Scope::Boat)),
         OperatorCommand::StationKeep => Some(OperatorRequest::Delegate(Task::StationKeep)),
         OperatorCommand::GoToErp => Some(OperatorRequest::Delegate(Task::GoToErp)),
-        // A mission arms nothing until its upload has ended; a mode has numbers that must be
-        // checked against the file's limits.
+        // A mission does not arm the boat until its upload has ended; a mode has numbers that must
+        // be checked against the limits in the file.
         OperatorCommand::Status | OperatorCommand::Mission(_) | OperatorCommand::Mode(_) => None,
     }
 }
 
 impl Bridge {
-    /// The request for another mode of the boat's own controller, or the reason for its refusal.
+    /// The request for a different mode of the boat's own controller, or the reason for its
+    /// refusal.
     pub(super) fn request_mode(&self, mode: BoatMode) -> Result<OperatorRequest, String> {
         let limit_pct = self.plan.gateway.limits.thrust_max_pct;
         match mode {

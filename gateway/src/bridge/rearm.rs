@@ -1,17 +1,17 @@
-//! When a boat may arm itself again after a failsafe for lack of fresh orders.
+//! Decides when a boat may rearm itself after a failsafe for lack of fresh orders.
 
 use primitives::SimTime;
 
-/// Orders must have been fresh for this long, s. An E-stop that a cut link held up arrives within
-/// this time, because operators' programs repeat it.
+/// Time for which orders must have been fresh, s. An E-stop delayed by a link failure arrives
+/// within this time, because operators' programs repeat it.
 const STEADY_S: f64 = 1.0;
 
 /// Watches orders and failsafes.
 pub(super) struct Rearm {
-    /// After a failsafe, the boat may arm itself for this long, s.
+    /// Time after a failsafe within which the boat may rearm itself, s.
     within_s: f64,
     pub(super) failsafe_at: SimTime,
-    /// Since when orders have been fresh without interruption.
+    /// Start of the current period of fresh orders.
     fresh_since: Option<SimTime>,
 }
 
@@ -24,7 +24,7 @@ impl Rearm {
         }
     }
 
-    /// Whether the boat may arm itself now.
+    /// Whether the boat may rearm itself now.
     pub(super) fn is_allowed(&mut self, now: SimTime, order_fresh: bool) -> bool {
         self.fresh_since = order_fresh.then(|| self.fresh_since.unwrap_or(now));
         let is_steady = self

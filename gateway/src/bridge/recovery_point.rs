@@ -1,11 +1,11 @@
-//! The emergency recovery point that we gave the boat: uploaded with a mission, then confirmed by
+//! The emergency recovery point that we set: uploaded with a mission, then confirmed by
 //! observation.
 
 use crate::nmea::{Mode, Operator};
 use crate::protocol::ControlReport;
 
-/// A reported home within this distance of our recovery point is the one that we set, degrees: one
-/// metre.
+/// Maximum distance of a reported home from our recovery point for them to be the same, degrees:
+/// one metre.
 const HOME_DEG: f64 = 9e-6;
 
 /// Progress of the boat's recovery point.
@@ -14,10 +14,10 @@ pub(super) enum RecoveryPoint {
     /// The boat has no known recovery point.
     #[default]
     Unknown,
-    /// Its mission is being uploaded: latitude and longitude, degrees, and whether the boat has
-    /// shown that it accepts lines.
+    /// The mission with the point is being uploaded: latitude and longitude, degrees, and whether
+    /// the boat has shown that it accepts lines.
     Uploading([f64; 2], bool),
-    /// The boat has accepted it: latitude and longitude, degrees.
+    /// The boat has accepted the point: latitude and longitude, degrees.
     Taken([f64; 2]),
 }
 
@@ -32,18 +32,18 @@ impl RecoveryPoint {
             .operator
             .is_none_or(|operator| operator == Operator::Secondary);
         *self = match report.shown.mode {
-            // Another operator may upload a mission of their own, and a boat does not report which
-            // one it has.
+            // Another operator may upload a different mission, and boats do not report which one
+            // they have.
             _ if !is_ours => RecoveryPoint::Unknown,
             Mode::FileDownload => RecoveryPoint::Uploading(erp, true),
-            // No sentence acknowledges an upload. We can only see that the boat entered mode F for
-            // the lines and then W by our command; over TCP no line is lost on the way.
+            // No sentence acknowledges an upload. We can only observe that the boat entered mode F
+            // for the lines, then mode W at our command; over TCP no line is lost on the way.
             Mode::Waypoint if shown && !is_uploading => RecoveryPoint::Taken(erp),
             _ => *self,
         };
     }
 
-    /// Compares the home that the boat reports, its recovery point, with ours.
+    /// Compares the boat's reported home, which is its recovery point, with ours.
     pub(super) fn take_home(&mut self, [lat_deg, lon_deg]: [f64; 2]) {
         let (RecoveryPoint::Uploading(erp, _) | RecoveryPoint::Taken(erp)) = *self else {
             return;
@@ -51,7 +51,7 @@ impl RecoveryPoint {
         let is_it = (lat_deg - erp[0]).abs() <= HOME_DEG && (lon_deg - erp[1]).abs() <= HOME_DEG;
         *self = match *self {
             _ if is_it => RecoveryPoint::Taken(erp),
-            // It has a different one now.
+            // The boat now has a different recovery point.
             RecoveryPoint::Taken(_) => RecoveryPoint::Unknown,
             before => before,
         };

@@ -1,4 +1,4 @@
-//! The status of a gateway, in numbers and text.
+//! The status of a gateway, as numbers and strings.
 
 use super::Bridge;
 use crate::nmea::Operator;
@@ -18,9 +18,9 @@ pub(super) struct Counters {
 }
 
 impl Bridge {
-    /// The status now, with the conditions missing at the last step. Changes nothing, so queries do
-    /// not affect a replay. The shell adds data known only to it: link name, control port,
-    /// latencies.
+    /// The current status, with the conditions missing at the last step. Changes no state, so
+    /// queries do not affect a replay. The shell adds the data that only it knows: link name,
+    /// control port, latencies.
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self
             .on_site
@@ -68,14 +68,14 @@ impl Bridge {
         }
     }
 
-    /// The supervisor's state as text.
+    /// The supervisor's state as a string.
     pub(crate) fn state_in_words(&self) -> String {
         match self.supervisor.state() {
             State::EStopped => format!(
                 "e-stopped (by an E-stop of {})",
                 self.supervisor.stopped_by()
             ),
-            // Keep the first word of the state: the stop commands and possibly external readers
+            // Keep the first word of the state: the stop commands, and possibly external programs,
             // parse it.
             state if self.protocol.is_uploading() => format!("{state}, uploading a mission"),
             state => state.to_string(),

@@ -1,4 +1,4 @@
-//! What the bridge sends a boat to stop it.
+//! The messages that stop a boat.
 
 use super::Bridge;
 use crate::protocol::Command;
@@ -8,13 +8,13 @@ impl Bridge {
     /// The shutdown message, sent before the link closes: zero thrust, then standby.
     pub fn shutdown_message(&self) -> Vec<u8> {
         let mut message = Vec::new();
-        // Work on a copy: the guard's message is regenerated repeatedly and must change nothing.
+        // Use a copy: the guard's message is regenerated repeatedly, without side effects.
         let mut protocol = self.protocol.clone();
         if self.plan.dry_run {
             protocol.write(SimTime::ZERO, Command::Standby, &mut message);
             return message;
         }
-        // During a mission upload the boat might take the stop for a mission line.
+        // During a mission upload the boat might read the stop as a mission line.
         if protocol.abort_upload() {
             protocol.write(SimTime::ZERO, Command::EndOfUpload, &mut message);
         }
@@ -27,12 +27,12 @@ impl Bridge {
         self.protocol.guard_message()
     }
 
-    /// Standby, with the next start-up word if the boat listens to us.
+    /// Standby, with the next start-up word if the boat accepts our commands.
     pub(super) fn standby(&mut self) -> Command {
         let listens = self.conditions.control.is_none() && !self.under_way && !self.plan.dry_run;
-        // Words such as THR_ON switch outputs of the boat and are sent once. They ride on standby
-        // sentences, one at a time, and only while the boat reports us in control, so that a boat
-        // that ignores us loses none.
+        // Words such as THR_ON switch outputs of the boat and are sent once, with standby
+        // sentences, one at a time. They are sent only while the boat reports us in control, so
+        // that none is lost.
         let word = if listens {
             self.words.pop_front()
         } else {

@@ -6,7 +6,7 @@ use primitives::{Ned, math};
 use rules::field::{distance_to_line, sides};
 use scenario::{Document, check_corners, check_thrust_map};
 
-/// Maximum distance of a geofence corner from the first, m: farther ones have latitude and
+/// Maximum distance of a geofence corner from the first, m. Corners farther away have latitude and
 /// longitude exchanged, or an extra digit.
 const EXTENT_MAX_M: f64 = 50_000.0;
 /// A sphere is accurate enough to detect crossing sides.
@@ -62,7 +62,7 @@ fn check_geofence(document: &Document<Gateway>) {
     }
 }
 
-/// The corners of a polygon in metres from `origin`, if it is valid.
+/// The corners of a polygon in metres from `origin`, if the polygon is valid.
 fn polygon(
     document: &Document<Gateway>,
     path: &str,
@@ -97,8 +97,8 @@ fn polygon(
         .map(|()| corners)
 }
 
-/// Projects a position on a sphere to a plane: good for the order of corners, not for distances of
-/// sides.
+/// Projects a position on a sphere to a plane: accurate enough for the order of corners, not for
+/// the lengths of sides.
 fn metres_from([lat_deg, lon_deg]: [f64; 2], place: [f64; 2]) -> Ned {
     let (_, shrink) = math::sin_cos_deg(lat_deg);
     let [north, east] =

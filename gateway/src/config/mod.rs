@@ -11,8 +11,8 @@ use scenario::{Document, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How a gateway drives a real boat, and when it stops it. The defaults are conservative, for the
-/// SeaRobotics Surveyor.
+/// How a gateway drives a real boat, and when it stops the boat. The defaults are conservative, for
+/// the SeaRobotics Surveyor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Gateway {
     /// The file's stem.
@@ -79,7 +79,7 @@ impl ScenarioFile for Gateway {
     }
 }
 
-/// The gateway of an empty file.
+/// The gateway that an empty file describes.
 ///
 /// # Panics
 /// Never: every key has a default.
@@ -147,7 +147,7 @@ pub enum SwitchWord {
 }
 
 impl SwitchWord {
-    /// As it is sent.
+    /// The word as sent.
     pub fn text(self) -> &'static str {
         match self {
             SwitchWord::ThrOn => "THR_ON",

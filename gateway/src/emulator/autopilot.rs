@@ -7,16 +7,16 @@ use primitives::frame::{Ned, Pose};
 use primitives::math;
 use std::collections::BTreeMap;
 
-/// A position counts as reached, or kept, within this distance, m.
+/// Distance within which a position counts as reached or kept, m.
 const NEAR_M: f64 = 3.0;
-/// Maximum speed of a boat that returns to its station, m/s.
+/// Maximum speed of a boat returning to its station, m/s.
 const KEEP_M_S: f64 = 1.0;
-/// Approach speed to a position, m/s per m of distance.
+/// Approach speed per distance from the position, m/s per m.
 const APPROACH_PER_S: f64 = 0.2;
-/// Thrust difference of a boat that goes astern, per cent: per rad, and maximum.
+/// Thrust difference of a boat going astern: per cent per rad, and maximum per cent.
 const ASTERN_PCT_PER_RAD: f64 = 30.0;
 const ASTERN_DIFFERENCE_PCT: f64 = 20.0;
-/// Throttle of a mission that does not specify one, per cent.
+/// Throttle of a mission without a specified throttle, per cent.
 const THROTTLE_PCT: f64 = 40.0;
 
 /// The state of the controller.
@@ -25,20 +25,20 @@ pub(super) struct Autopilot {
     /// Waypoints by index; 0 is the emergency recovery point.
     places: BTreeMap<u16, Ned>,
     throttle_pct: Option<f64>,
-    /// Speed of a mission that specifies one, m/s.
+    /// Speed of a mission, if specified, m/s.
     pub(super) speed_m_s: Option<f64>,
-    /// The mission that is being uploaded, if any.
+    /// The mission being uploaded, if any.
     upload: Option<Upload>,
-    /// Where it stays without a destination.
+    /// Where the boat stays without a destination.
     pub(super) station: Option<Ned>,
     /// The next waypoint, counted from 1.
     pub(super) next: u16,
 }
 
-/// A mission that is being uploaded.
+/// A mission being uploaded.
 #[derive(Clone, Debug, Default)]
 struct Upload {
-    /// Number of lines announced, and received.
+    /// Number of announced lines, and of received lines.
     announced: f64,
     lines: u32,
     throttle_pct: Option<f64>,
@@ -54,7 +54,7 @@ pub(super) fn thrust(thrust_pct: f64, difference_pct: f64) -> Order {
     }
 }
 
-/// The order for a heading and a speed; both are required.
+/// The order for a heading and a speed; both must be given.
 pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     match (heading_rad, speed_m_s) {
         (Some(heading_rad), Some(speed_m_s)) => Order::Steer {
@@ -65,7 +65,7 @@ pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     }
 }
 
-/// The order for this speed, m/s, astern, that turns the bow by this angle, rad.
+/// The order to go astern at this speed (m/s) and turn the bow by this angle (rad).
 pub(super) fn astern(speed_m_s: f64, turn_rad: f64) -> Order {
     let map = SURVEYOR_THRUST_MAP
         .iter()
@@ -75,24 +75,24 @@ pub(super) fn astern(speed_m_s: f64, turn_rad: f64) -> Order {
     thrust(math::interpolate(map, speed_m_s), difference_pct)
 }
 
-/// The speed ahead that a thrust gives, m/s.
+/// The forward speed at a thrust, m/s.
 pub(super) fn speed_of_thrust(thrust_pct: f64) -> f64 {
     math::interpolate(SURVEYOR_THRUST_MAP, thrust_pct.clamp(0.0, 100.0))
 }
 
 impl Autopilot {
-    /// Starts a new task here.
+    /// Starts a new task at this position.
     pub(super) fn begin(&mut self, at: Ned) {
         self.station = Some(at);
         self.next = 1;
     }
 
-    /// The recovery point.
+    /// Sets the recovery point.
     pub(super) fn set_home(&mut self, home: Ned) {
         self.places.insert(0, home);
     }
 
-    /// Sets a complete mission, with its speed, m/s, if specified; the recovery point stays.
+    /// Sets a complete mission with its speed (m/s), if specified; the recovery point stays.
     pub(super) fn set_mission(&mut self, waypoints: Vec<Ned>, speed_m_s: Option<f64>) {
         // Place 0 is the home, which a mission does not replace.
         self.places.retain(|index, _| *index == 0);
@@ -113,7 +113,7 @@ impl Autopilot {
     /// Ends the upload; returns a message. If a line is missing, there is no mission.
     pub(super) fn end_download(&mut self) -> Option<String> {
         let upload = self.upload.take()?;
-        // How a real Surveyor handles an incomplete upload is not known. The strictest behaviour
+        // It is not known how a real Surveyor handles an incomplete upload. The strictest behaviour
         // tests that our own uploads are complete.
         if f64::from(upload.lines) != upload.announced {
             return Some(format!(
@@ -149,13 +149,13 @@ impl Autopilot {
         go(pose, station, KEEP_M_S).unwrap_or(Order::Hold)
     }
 
-    /// Goes to a position at this speed, m/s, and keeps station there.
+    /// Goes to a position at the given speed (m/s) and keeps station there.
     pub(super) fn go_to(&mut self, pose: Pose, place: Ned, speed_m_s: f64) -> Order {
         self.station = Some(place);
         go(pose, place, speed_m_s).unwrap_or(Order::Hold)
     }
 
-    /// Goes to the recovery point, and stays there; without one it stays where it is.
+    /// Goes to the recovery point and stays there; without one, stays at its position.
     pub(super) fn go_to_erp(&mut self, pose: Pose) -> Order {
         match self.places.get(&0) {
             Some(erp) => go(pose, *erp, self.speed_m_s()).unwrap_or(Order::Hold),
@@ -192,7 +192,7 @@ fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
     }
     let heading_rad = pose.at.bearing_rad(place);
     let (_, ahead) = math::sin_cos(wrap_pi(heading_rad - pose.psi_rad));
-    // A boat that points elsewhere turns first: at full thrust it would circle its station.
+    // A boat that points elsewhere turns first; at full thrust it would circle its station.
     let share = ahead.max(0.0) * ahead.max(0.0);
     let limit_m_s = (APPROACH_PER_S * distance_m).min(speed_m_s);
     Some(Order::Steer {

@@ -5,7 +5,7 @@ use crate::lithium;
 use messages::Order;
 use primitives::SimTime;
 
-/// Maximum step, s: after a longer one the sim was away.
+/// Maximum step, s; after a longer one, the sim was away.
 const STEP_MAX_S: f64 = 10.0;
 
 /// The properties of a battery and its consumers.
@@ -54,15 +54,15 @@ pub(super) struct Battery {
     drains: bool,
     /// Charge used since the start, Ah.
     used_ah: f64,
-    /// Current of the thrusters, port first, A.
+    /// Current of each thruster, port first, A.
     pub(super) thruster_a: [f64; 2],
     at: Option<SimTime>,
-    /// A voltage that it shows regardless of its charge, V.
+    /// The voltage shown regardless of the charge, V.
     pub(super) shown_v: Option<f64>,
 }
 
 impl Battery {
-    /// A battery with this fraction of its charge left; `None` is full and never drains.
+    /// A battery with this fraction of its charge left; `None` means full, without drain.
     pub(super) fn new(pack: Pack, left: Option<f64>) -> Battery {
         Battery {
             pack,
@@ -75,8 +75,8 @@ impl Battery {
         }
     }
 
-    /// Advances time under this order. An empty battery drives no thruster: returns the order as
-    /// executed.
+    /// Advances time under an order. Returns the order as executed: an empty battery drives no
+    /// thrusters.
     pub(super) fn carry_out(&mut self, now: SimTime, order: Order) -> Order {
         let step_s = self
             .at
@@ -91,8 +91,8 @@ impl Battery {
         // its thrusters.
         let order = if self.left > 0.0 { order } else { Order::Hold };
         let rest_v = self.rest_v();
-        // From the voltage at rest, not under load: a loop through the resistance would need
-        // iterations for a few per cent.
+        // Use the voltage at rest, not under load: a loop through the resistance would need
+        // iterations to gain a few per cent.
         self.thruster_a = powers(order).map(|share| share * self.pack.thruster_w / rest_v);
         order
     }
@@ -128,7 +128,7 @@ fn powers(order: Order) -> [f64; 2] {
     let full_m_s = speed_of_thrust(100.0);
     let of_speed = |speed_m_s: f64| {
         let share = (speed_m_s / full_m_s).clamp(0.0, 1.0);
-        // Power is proportional to the cube of the speed that the thrust gives: at 40 % thrust the
+        // Power is proportional to the cube of the speed at this thrust, so at 40 % thrust the
         // battery lasts far longer than 2.5 times as long.
         share * share * share
     };
@@ -150,7 +150,7 @@ mod tests {
         starboard: 0.4,
     };
 
-    /// The battery after this many hours of an order, in steps of a second.
+    /// The battery after this many hours of an order, in steps of one second.
     fn after(mut battery: Battery, hours: f64, order: Order) -> (Battery, Order) {
         let mut carried_out = order;
         for s in 0..=(3600.0 * hours) as u32 {
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_surveyor_shows_what_was_seen_on_one() {
-        // $PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26: from a boat at rest.
+        // $PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26: received from a boat at rest.
         let (battery, _) = after(
             Battery::new(Pack::SURVEYOR, Some(15_433.0 / 57_741.0)),
             0.0,
@@ -189,7 +189,7 @@ mod tests {
             (1400.0..1600.0).contains(&wh),
             "{wh} Wh, specified are 1500"
         );
-        // 1.5 m/s are half of the highest speed: an eighth of 2000 W, and 33 W of electronics.
+        // 1.5 m/s is half the maximum speed: an eighth of 2000 W, plus 33 W for the electronics.
         assert!((hours - 1500.0 / 283.0).abs() < 0.5, "{hours} h");
         assert!(
             first_v > 29.0 && battery.volts() < 21.5,

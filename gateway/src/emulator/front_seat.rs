@@ -1,4 +1,4 @@
-//! The front seat of an emulated boat, whichever protocol it speaks.
+//! The front seat of an emulated boat, with either protocol.
 
 use super::Port;
 use crate::nmea::Operator;
@@ -8,7 +8,7 @@ use primitives::SimTime;
 
 /// The front seat.
 pub trait FrontSeat: Send {
-    /// Sets the receiver's clock: UTC, ns since 1970.
+    /// Sets the receiver's clock to UTC, ns since 1970.
     fn set_clock(&mut self, _now: SimTime, _utc_ns: u64) {}
 
     /// Receives bytes from a port. Replies are sent with the next telemetry.
@@ -17,7 +17,7 @@ pub trait FrontSeat: Send {
     /// The next log message, if any.
     fn take_remark(&mut self) -> Option<String>;
 
-    /// The operator in control, if that depends on ports.
+    /// The operator in control, if this depends on ports.
     fn operator(&self) -> Option<Operator> {
         None
     }
@@ -25,10 +25,10 @@ pub trait FrontSeat: Send {
     /// Updates the sensor measurements.
     fn observe(&mut self, _now: SimTime, _own: &OwnBoat) {}
 
-    /// Receives the boat's true motion, if it has its own sensors.
+    /// Receives the boat's true motion, for front seats with their own sensors.
     fn observe_truth(&mut self, _now: SimTime, _truth: &VehicleTruth) {}
 
-    /// The boat's order to its thrusters now.
+    /// The boat's current order to its thrusters.
     fn order(&mut self, now: SimTime) -> Order;
 
     /// Appends the telemetry that is due.

@@ -37,16 +37,15 @@ pub struct Plan {
     pub datum: LatLon,
     /// Declination, east positive, rad.
     pub declination_rad: f64,
-    /// Without a command for this long the boat goes to standby, s; `None` means never.
+    /// Time without a command after which the boat goes to standby, s; `None` means never.
     pub watchdog_s: Option<f64>,
-    /// Whether a set-point that is not a whole number leaves the previous one in force, as in one
-    /// known stand-in.
+    /// Whether a non-integer set-point leaves the previous one in force, as in one known stand-in.
     pub integers: bool,
     /// Sentences in addition to a Surveyor's.
     pub extra: Vec<Extra>,
     /// Date and time of day at time zero.
     pub began: (Date, TimeOfDay),
-    /// Initial charge of its battery, as a fraction; `None` is full and never drains.
+    /// Initial charge of the battery, as a fraction; `None` means full, without drain.
     pub charge: Option<f64>,
 }
 
@@ -63,14 +62,14 @@ pub enum Port {
 pub struct Emulator {
     plan: Plan,
     frame: LocalFrame,
-    /// Of each port.
+    /// By port.
     framers: [Framer; 2],
     /// The operator in control.
     operator: Operator,
-    /// The last command that it followed, and when.
+    /// The last command followed, and when.
     command: Command,
     commanded_at: SimTime,
-    /// In force in mode T: thrust and difference, per cent.
+    /// Thrust and difference in force in mode T, per cent.
     thrust_pct: f64,
     difference_pct: f64,
     autopilot: Autopilot,
@@ -103,7 +102,7 @@ impl Emulator {
         }
     }
 
-    /// Gives control to another operator; the boat goes to standby.
+    /// Gives control to the given operator; the boat goes to standby.
     pub fn give_control(&mut self, now: SimTime, operator: Operator) {
         if self.operator != operator {
             self.operator = operator;
@@ -116,7 +115,7 @@ impl Emulator {
         self.battery.shown_v = Some(volts);
     }
 
-    /// The thrusters' order from its command.
+    /// The thruster order that follows from the command.
     fn commanded(&mut self) -> Order {
         let Some(own) = &self.sensed.own else {
             return Order::Hold;
@@ -143,7 +142,7 @@ impl Emulator {
         }
     }
 
-    /// One burst of telemetry.
+    /// Appends one burst of telemetry.
     pub fn telemetry(&self, now: SimTime, out: &mut Vec<u8>) {
         telemetry::burst(self, now, out);
     }
@@ -167,8 +166,8 @@ impl Emulator {
             Port::Secondary => self.operator == Operator::Secondary,
         };
         match sentence {
-            // Silently counted and ignored, so a back seat that does not check which operator is in
-            // control does not notice.
+            // Count and ignore it silently, so that a back seat notices only if it checks which
+            // operator is in control.
             Sentence::Command(_) if !in_control => self.ignored += 1,
             Sentence::Command(command) => {
                 self.followed += 1;
@@ -185,9 +184,9 @@ impl Emulator {
         }
     }
 
-    /// The primary operator takes control with any command. `OP2_ON` in it gives control to the
-    /// secondary operator, `OP2_OFF` takes it away. These words are ours: the real console's are
-    /// not public.
+    /// The primary operator takes control with any command. The word `OP2_ON` gives control to the
+    /// secondary operator, `OP2_OFF` takes it away. Both are our own: the real console's are not
+    /// public.
     fn take_primary(&mut self, now: SimTime, sentence: &Sentence) {
         let Sentence::Command(command) = sentence else {
             return;
@@ -222,8 +221,8 @@ impl Emulator {
                 }
             }
             mode => {
-                // Another mode ends mode T: its thrust must not return with the next command that
-                // leaves a field empty.
+                // A different mode ends mode T: its thrust must not return with a later command
+                // that leaves a field empty.
                 (self.thrust_pct, self.difference_pct) = (0.0, 0.0);
                 // A command with the same mode continues the current task.
                 if let (true, Some(own)) = (mode != self.command.mode, &self.sensed.own) {
@@ -242,7 +241,7 @@ impl FrontSeat for Emulator {
     }
 
     fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
-        // Taken out during use: sentences change the rest of the emulator.
+        // Move it out during use: sentences change the rest of the emulator.
         let mut framer = std::mem::take(&mut self.framers[port as usize]);
         framer.push(bytes, &mut |body| {
             // Unknown sentences are ignored.
@@ -268,8 +267,8 @@ impl FrontSeat for Emulator {
     fn order(&mut self, now: SimTime) -> Order {
         let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
         let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
-        // Only if a file enables it: whether Surveyors have a watchdog is not published, and a
-        // gateway that is safe without one is safe with it.
+        // Only if a file enables it: it is not published whether Surveyors have a watchdog, and a
+        // gateway that is safe without one is also safe with one.
         if silent && self.command.mode != Mode::Standby {
             self.command = Command::default();
         }

@@ -3,7 +3,7 @@
 use messages::picture::OwnBoat;
 use primitives::SimTime;
 
-/// A receiver without a fix newer than this reports none, s.
+/// Maximum age of a fix before the receiver reports none, s.
 // The period of a receiver that measures once a second.
 const FIX_AGE_MAX_S: f64 = 1.0;
 

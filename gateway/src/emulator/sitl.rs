@@ -3,9 +3,8 @@
 //!
 //! For each step, the firmware sends its servo outputs as a UDP datagram and waits for a line of
 //! JSON with time, attitude, position, velocity and IMU values. The simulation publishes a boat's
-//! motion at every decision. Between two such moments each coordinate is a cubic of time, so that
-//! position, velocity and specific force agree. The firmware is therefore one decision behind.
-//!
+//! motion at every decision. Between two decisions each coordinate is a cubic function of time, so
+//! that position, velocity and specific force agree. The firmware is therefore one decision behind.
 //! Source: ArduPilot, `libraries/SITL/SIM_JSON.cpp` and `libraries/SITL/examples/JSON/readme.md`.
 
 use messages::{Order, VehicleTruth};
@@ -17,32 +16,32 @@ use std::collections::VecDeque;
 
 /// Standard gravity, m/s², as in the firmware.
 const GRAVITY_M_S2: f64 = 9.80665;
-/// Limits of the steps per second that a firmware requests. The default is 1200. Coarser
-/// steps delay its loops so much that it finds its GPS receiver too slow.
+/// Limits of the requested steps per second. The firmware's default is 1200. Coarser steps delay
+/// its loops so much that it considers its GPS receiver too slow.
 const RATE_MAX_HZ: u16 = 1200;
 const RATE_MIN_HZ: u16 = 50;
-/// Further behind the simulation than this, s, the firmware gets steps of twice the length.
+/// Lag behind the simulation beyond which the firmware gets steps of twice the length, s.
 const BEHIND_S: f64 = 0.3;
-/// Further behind than this, s, it skips to the present.
+/// Lag beyond which it skips to the present, s.
 const LOST_S: f64 = 2.0;
-/// Without servo outputs for this long the thrusters stop, s.
+/// Time without servo outputs after which the thrusters stop, s.
 const SILENT_S: f64 = 1.0;
 
-/// Channels of the largest datagram.
+/// Number of channels in the largest datagram.
 const CHANNELS: usize = 32;
-/// The datagram's magic number, by its number of channels.
+/// The datagram's magic number for each number of channels.
 const FORMATS: [(u16, usize); 2] = [(18_458, 16), (29_569, CHANNELS)];
-/// Bytes before the pulses: magic number, rate and step.
+/// Number of bytes before the pulses: magic number, rate and step.
 const HEADER: usize = 8;
 
 /// Which servo outputs drive the thrusters, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Servos {
-    /// Channel of the port thruster, from 1. 1 in ArduPilot's skid-steering boats.
+    /// Channel of the port thruster, from 1; in ArduPilot's skid-steering boats, 1.
     pub port: usize,
-    /// Channel of the starboard thruster, from 1. 3 in ArduPilot's skid-steering boats.
+    /// Channel of the starboard thruster, from 1; in ArduPilot's skid-steering boats, 3.
     pub starboard: usize,
-    /// Pulse lengths of full astern, zero and full ahead, µs, in ascending order.
+    /// Pulse widths for full astern, zero and full ahead, µs, in ascending order.
     pub pulse_us: [u16; 3],
 }
 
@@ -69,7 +68,7 @@ struct Outputs {
     rate_hz: u16,
     /// Number of the step. It repeats when a reply was lost, and starts again with the firmware.
     step: u32,
-    /// Pulse lengths by channel, µs; 0 means no pulse.
+    /// Pulse widths by channel, µs; 0 means no pulse.
     pulses_us: [u16; CHANNELS],
 }
 
@@ -97,7 +96,7 @@ impl Outputs {
     }
 }
 
-/// North, east, down, m; roll, pitch, yaw, rad, yaw without jumps.
+/// North, east, down (m); roll, pitch, yaw (rad), the yaw without jumps.
 type Coordinates = [f64; 6];
 
 /// A boat's true motion at one moment.
@@ -132,7 +131,7 @@ impl Moment {
             0.0,
             nav.yaw_rate_rad_s,
         ];
-        // The simulation publishes no rates of the motions that only the waves cause.
+        // The simulation does not publish rates of motions caused by waves alone.
         if let Some(before) = before {
             let dt = (at - before.at).as_s();
             (2..5).for_each(|i| rate[i] = (value[i] - before.value[i]) / dt);
@@ -140,8 +139,8 @@ impl Moment {
         Moment { at, value, rate }
     }
 
-    /// Values, rates and accelerations at a time between two moments: the cubics with the values
-    /// and rates of both.
+    /// Values, rates and accelerations at a time between two moments, from the cubics with the
+    /// values and rates of both.
     fn between(from: &Moment, to: &Moment, at: SimTime) -> [Coordinates; 3] {
         let span = (to.at - from.at).as_s();
         let u = (at - from.at).as_s() / span;
@@ -161,7 +160,7 @@ impl Moment {
     }
 }
 
-/// The reply to one step. The firmware finds keys by their text, in this order.
+/// The reply to one step. The firmware searches for the keys as strings, in this order.
 #[derive(Serialize)]
 struct State {
     /// Since the firmware's start, s.
@@ -177,7 +176,7 @@ struct State {
 
 #[derive(Serialize)]
 struct Imu {
-    /// About the axes ahead, to starboard, down, rad/s.
+    /// About the axes forward, to starboard and down, rad/s.
     gyro: [f64; 3],
     /// Specific force along these axes, m/s².
     accel_body: [f64; 3],
@@ -200,7 +199,8 @@ impl State {
             pitch_rate * cr + yaw_rate * cp * sr,
             yaw_rate * cp * cr - pitch_rate * sr,
         ];
-        // From the field's axes to the boat's: yaw, then pitch, then roll (Fossen 2011, eq. 2.18).
+        // From the field's axes to the boat's axes: yaw, then pitch, then roll (Fossen 2011, eq.
+        // 2.18).
         let [n, e, d] = [
             acceleration[0],
             acceleration[1],
@@ -225,7 +225,7 @@ impl State {
 #[derive(Debug)]
 pub struct Sitl {
     servos: Servos,
-    /// The boat's motion from the moment before the firmware's time on, oldest first.
+    /// The boat's motion, oldest first, starting with the last moment before the firmware's time.
     moments: VecDeque<Moment>,
     /// Game time of the last reply, and of the firmware's time zero.
     clock: Option<(SimTime, SimTime)>,
@@ -239,7 +239,7 @@ pub struct Sitl {
 }
 
 impl Sitl {
-    /// Waits for a firmware with these thrusters.
+    /// A front seat that waits for firmware with these servo outputs.
     pub fn new(servos: Servos) -> Sitl {
         Sitl {
             servos,
@@ -288,13 +288,14 @@ impl Sitl {
     /// Receives the boat's true motion.
     pub fn observe(&mut self, at: SimTime, truth: &VehicleTruth) {
         let before = self.moments.back();
-        // A quarantined boat may have no finite motion. It stays where it was for the firmware.
+        // A quarantined boat may have no finite motion. For the firmware it stays at its last
+        // position.
         if truth.quarantined || before.is_some_and(|before| before.at >= at) {
             return;
         }
         let moment = Moment::new(at, truth, before);
         self.moments.push_back(moment);
-        // Motion that a slow firmware will skip is not kept either.
+        // Nor keep motion that a slow firmware will skip.
         let skipped = at - SimTime::from_s(2.0 * LOST_S);
         let done = self.clock.map_or(at, |(now, _)| now.max(skipped));
         while self.moments.len() > 2 && self.moments[1].at <= done {
@@ -311,7 +312,7 @@ impl Sitl {
         }
     }
 
-    /// The reply that the firmware waits for, once the simulation has reached its time.
+    /// The reply that the firmware waits for, once the simulation has reached that time.
     pub fn reply(&mut self) -> Option<String> {
         let newest = self.moments.back()?.at;
         let (outputs, _) = self
@@ -326,7 +327,8 @@ impl Sitl {
             self.remarks.push_back(format!(
                 "firmware was {lost_s:.1} s behind the game: skipped to the present"
             ));
-            // The firmware's own clock must not jump: its drivers would find their sensors dead.
+            // The firmware's own clock must not jump, or its drivers would consider their sensors
+            // dead.
             zero = zero + (last - now);
             now = last;
         }
@@ -349,7 +351,7 @@ impl Sitl {
         let motion = Moment::between(&self.moments[after - 1], &self.moments[after], next);
         let state = State::new((next - zero).as_s(), motion);
         let json = serde_json::to_string(&state).expect("numbers are JSON");
-        // The firmware reads what is between the last two line feeds.
+        // The firmware reads the characters between the last two line feeds.
         Some(format!("\n{json}\n"))
     }
 

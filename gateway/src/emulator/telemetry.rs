@@ -9,12 +9,12 @@ use messages::picture::{Imu, Nav};
 use primitives::angle::compass_deg_from_rad;
 use primitives::{LatLon, SimTime};
 
-/// Below this speed a receiver reports no course, m/s.
+/// Minimum speed at which a receiver reports a course, m/s.
 const COURSE_FROM_M_S: f64 = 0.1;
 const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Sentences that a Surveyor does not send, for readers that need them: gpsd has no time and no
-/// speed without RMC.
+/// Sentences that a Surveyor does not send, for readers that need them: gpsd gets time and speed
+/// only from RMC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extra {
     /// Fix with date, course and speed.
@@ -47,7 +47,7 @@ pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
     .write(out);
 }
 
-/// A fix in reported form.
+/// A fix as reported.
 struct FixReport {
     date: Date,
     now: TimeOfDay,
@@ -74,8 +74,8 @@ impl FixReport {
                 .has_fix(now)
                 .then(|| boat.frame.lat_lon(nav.at())),
             psi_rad: nav.psi_rad,
-            // Blank, not zero: a reader that treated a missing course as north would get the
-            // velocity of a boat at rest wrong.
+            // Blank, not zero: a reader that treated a missing course as north would compute a
+            // wrong velocity for a boat at rest.
             course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| velocity.direction_rad()),
             speed_m_s,
         }
@@ -178,8 +178,8 @@ fn battery(battery: &super::battery::Battery, now: SimTime) -> Battery {
 }
 
 fn control_state(boat: &Emulator) -> ControlState {
-    // Without a commanded heading, it reports its own.
-    // Seen in public samples of PSEAD: mode T shows the boat's own heading.
+    // Without a commanded heading, the boat reports its own: in public samples, PSEAD in mode T
+    // shows the boat's heading.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
     let has = || {
         boat.sensed
@@ -187,7 +187,7 @@ fn control_state(boat: &Emulator) -> ControlState {
             .as_ref()
             .map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad))
     };
-    // As the boat executes it: limited to full thrust, except for a speed.
+    // As executed by the boat: limited to full thrust, except for a speed.
     let is_speed = boat.command.mode == Mode::Speed;
     let clamped = |number: Option<f64>| {
         number.map(|number| {

@@ -1,4 +1,4 @@
-//! The water where a boat may be: a polygon without its keep-outs.
+//! The water where a boat may be: a polygon without the keep-outs.
 
 use crate::config::Geofence;
 use crate::geodesy::LocalFrame;
@@ -8,17 +8,17 @@ use rules::field::{Field, distance_to_outline, do_meet, is_within, sides};
 use scenario::{Scenario, StartPosition};
 use thiserror::Error;
 
-/// Angle step for drawing a round corner, degrees: it cuts off less than half a per cent of the
+/// Angle step for drawing a round corner, degrees; cuts off less than half a per cent of the
 /// margin.
 const ROUND_STEP_DEG: f64 = 90.0 / 8.0;
 
 /// Why a geofence does not suit a game.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum GeofenceError {
-    /// A keep-out is outside it.
+    /// A keep-out is outside the geofence.
     #[error("keep_out {0} (the first is 0) lies outside the geofence; move it inside")]
     KeepOutOutside(usize),
-    /// The boat would start where it must not be.
+    /// The boat would start outside the permitted water.
     #[error("{0} must start inside the geofence and outside keep-outs")]
     StartOutside(String),
 }
@@ -26,7 +26,7 @@ pub enum GeofenceError {
 /// The water where a boat may be, excluding its edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GeofenceArea {
-    /// Its corners, in order.
+    /// The corners of the outline, in order.
     pub outline: Vec<Ned>,
     /// The corners of the keep-outs.
     pub keep_out: Vec<Vec<Ned>>,
@@ -52,12 +52,13 @@ impl GeofenceArea {
         }
     }
 
-    /// Checks that it suits the game: it contains the keep-outs and the boat's start position.
+    /// Checks that the area suits the game: it must contain the keep-outs and the boat's start
+    /// position.
     ///
     /// # Errors
-    /// [`GeofenceError`] names what is outside.
+    /// [`GeofenceError`] names the part outside.
     pub fn check(&self, scenario: &Scenario, vehicle: VehicleId) -> Result<(), GeofenceError> {
-        // A keep-out that touches nothing has a mistyped coordinate, and leaves its shoal
+        // A keep-out that does not touch the area has a mistyped coordinate, and leaves its shoal
         // unprotected.
         let is_apart = |keep_out: &Vec<Ned>| {
             sides(keep_out)
@@ -87,7 +88,7 @@ impl GeofenceArea {
             .ok_or_else(|| GeofenceError::StartOutside(boat.name.clone()))
     }
 
-    /// Whether a boat may be here.
+    /// Whether a boat may be at a point.
     pub(crate) fn contains(&self, at: Ned) -> bool {
         is_within(&self.outline, at)
             && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
@@ -102,7 +103,7 @@ impl GeofenceArea {
     /// Whether the straight line ends inside, and never leaves the permitted water once it has
     /// entered: a boat that is outside, or in a keep-out, returns along it.
     pub(crate) fn leads_in(&self, from: Ned, to: Ned) -> bool {
-        // From the wrong side exactly one crossing leads in; a second one would lead out again.
+        // From outside, exactly one crossing leads in; a second one would lead out again.
         let crosses_once =
             |polygon: &[Ned], wrong: bool| met(polygon, from, to) == usize::from(wrong);
         self.contains(to)
@@ -113,7 +114,7 @@ impl GeofenceArea {
                 .all(|keep_out| crosses_once(keep_out, is_within(keep_out, from)))
     }
 
-    /// The distance to the nearest edge, m: negative where a boat must not be.
+    /// The distance to the nearest edge (m), negative outside the permitted water.
     pub(crate) fn clearance_m(&self, at: Ned) -> f64 {
         let outlines = std::iter::once(&self.outline).chain(&self.keep_out);
         let distance_m = outlines
@@ -134,17 +135,17 @@ fn met(polygon: &[Ned], from: Ned, to: Ned) -> usize {
         .count()
 }
 
-/// The area within a rectangle, clockwise on the chart, or within this distance of it: a rectangle
+/// The points in a rectangle or within this distance of it, clockwise on the chart: a rectangle
 /// with round corners.
 fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
     if margin_m <= 0.0 {
         return corners.to_vec();
     }
-    // Round corners, because a margin is a distance: square ones would allow 1.4 times as much at
-    // the corners.
+    // Round corners, because a margin is a distance: at square corners it would be 1.4 times as
+    // large.
     let round = |[before, corner, after]: [Ned; 3]| {
-        // From the normal of the side that ends here to that of the next side, a quarter turn
-        // clockwise.
+        // From the normal of the side that ends at the corner to that of the next side, a quarter
+        // turn clockwise.
         let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {
             let side = b - a;
             let length_m = a.distance(b);

@@ -5,38 +5,38 @@ use primitives::{SimTime, math};
 use scenario::boat::{Boat, Drive};
 use serde::{Deserialize, Serialize};
 
-/// Below this speed through the water a boat is at rest and only drifts, m/s.
+/// Speed through the water below which a boat is at rest and only drifts, m/s.
 const REST_M_S: f64 = 0.1;
 /// Time step of the prediction, s.
 const STEP_S: f64 = 0.25;
 /// Steps per straight leg.
 const STEPS_PER_LEG: u32 = 4;
-/// Drift counts for at least this long, s: a boat stays inside for this long after a stop.
+/// Minimum time for which drift counts, s: a boat stays inside for this long after a stop.
 const DRIFT_S: f64 = 20.0;
 /// Fractions of drift and turn by which the boat may deviate from the prediction: with these, no
-/// approach in `tests/geofence` crosses.
+/// approach in `tests/geofence` crosses the fence.
 const DRIFT_SLACK: f64 = 0.8;
 const TURN_SLACK: f64 = 0.7;
-/// An unsteered hull veers by this much, rad.
+/// Maximum veer of an unsteered hull, rad.
 const VEER_RAD: f64 = 0.1;
 /// Drift that cannot be observed under way, m/s.
 const LEEWAY_M_S: f64 = 0.2;
-/// The speed falls more slowly than the thruster setting, by at most this factor.
+/// The speed falls more slowly than the thruster setting, at most by this factor.
 const SLEW_SHARE: f64 = 0.75;
 /// Maximum duration of the prediction, s.
 const LONGEST_S: f64 = 60.0;
-/// The recent drift is a mean over about this time, s.
+/// Averaging time of the recent drift, s.
 const RECENT_S: f64 = 5.0;
-/// The lasting drift is a mean over about this time, s.
+/// Averaging time of the lasting drift, s.
 const LASTING_S: f64 = 20.0;
-/// Time constant of drift that does not last, s: with a turn, side slip ends.
+/// Time constant of drift that does not last, s; side slip ends with a turn.
 const DECAY_S: f64 = 4.0;
-/// After a longer gap between orders the estimate restarts, s.
+/// Gap between orders after which the estimate restarts, s.
 const GAP_MAX_S: f64 = 1.5;
 /// Maximum turn of a boat while it coasts, rad.
 const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
-/// The parameters of coasting: resistance ahead, thrusters, and resistance to turning.
+/// The parameters of coasting: forward resistance, thrusters, and resistance to turning.
 // M du/dt = F - l u - q |u| u (Fossen 2021, ch. 6), where F maintains the steady speed of the
 // present thrust.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ pub struct Coasting {
     pub linear_kg_s: f64,
     /// Quadratic resistance q, kg/m.
     pub quadratic_kg_m: f64,
-    /// Deceleration of a boat without such resistance, m/s².
+    /// Deceleration of a boat without these resistances, m/s².
     pub deceleration_m_s2: f64,
     /// The steady speed at full thrust, m/s.
     pub speed_max_m_s: f64,
@@ -76,7 +76,8 @@ impl Coasting {
                 yaw_s: (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2)
                     / hull.yaw_linear_kg_m2_s.max(1e-6),
             },
-            // It uses half of its limit (see `sim::kinematic`); 0 means none.
+            // A kinematic boat decelerates at half of its limit (see `sim::kinematic`); 0 means
+            // none.
             Drive::Kinematic(kinematic) => Coasting {
                 mass_kg: 1.0,
                 linear_kg_s: 0.0,
@@ -93,8 +94,8 @@ impl Coasting {
         }
     }
 
-    /// The same boat, but coasting at least the measured distance from each of these speeds: m/s
-    /// and m.
+    /// The same boat, but coasting at least the measured distance (m) from each of these speeds
+    /// (m/s).
     pub(super) fn as_measured(self, measured: &[(f64, f64)]) -> Coasting {
         let longer = |(speed_m_s, distance_m): &(f64, f64)| {
             distance_m / self.distance_m(*speed_m_s).max(1e-3)
@@ -111,7 +112,7 @@ impl Coasting {
         }
     }
 
-    /// How far it coasts from this speed with an immediate thrust cut, m.
+    /// Coasting distance from this speed after an immediate thrust cut, m.
     pub(super) fn distance_m(&self, speed_m_s: f64) -> f64 {
         let at_once = Coasting {
             lag_s: 0.0,
@@ -183,7 +184,7 @@ impl Coasting {
             if t_s > until_fall_s {
                 thrust_m_s = self.fallen_thrust(thrust_m_s, 0.0, STEP_S);
                 let change = self.resistance_m_s2(thrust_m_s) - self.resistance_m_s2(speed_m_s);
-                // A boat that is slower than its thrust allows gains speed for a while.
+                // A boat slower than its thrust allows first gains speed.
                 let decelerated = if thrust_m_s > 0.0 {
                     0.0
                 } else {
@@ -222,12 +223,12 @@ impl Coasting {
 /// A leg of the path to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leg {
-    /// Its end, m from the boat.
+    /// End of the leg, m from the boat.
     pub(super) end: Ned,
-    /// How far the boat may deviate laterally from that, m: leeway grows as the boat slows down,
-    /// and a turn may continue.
+    /// Maximum lateral deviation from the end, m: leeway grows as the boat slows down, and a turn
+    /// may continue.
     pub(super) slack_m: f64,
-    /// The greatest distance that the boat can be from its start, whatever its course, m.
+    /// Maximum distance of the boat from its start on any course, m.
     pub(super) reach_m: f64,
 }
 
@@ -236,30 +237,30 @@ pub(super) struct Leg {
 pub(super) struct Glide {
     /// Velocity through the water, m/s.
     pub(super) water_m_s: Ned,
-    /// Velocity of the water, plus that caused by the wind, m/s.
+    /// Velocity of the water plus that caused by the wind, m/s.
     pub(super) drift_m_s: Ned,
-    /// More drift now, which decays: a boat slips sideways in a turn.
+    /// Additional drift that decays, m/s: a boat slips sideways in a turn.
     pub(super) transient_m_s: Ned,
-    /// The steady speed of its present thrust, m/s.
+    /// The steady speed of the current thrust, m/s.
     pub(super) thrust_m_s: f64,
     /// Rate of turn, rad/s.
     pub(super) yaw_rate_rad_s: f64,
-    /// How long it continues as before, s.
+    /// How long the boat continues as before, s.
     pub(super) reaction_s: f64,
 }
 
 /// The drift of a boat under orders: its velocity over the ground minus the velocity that its
 /// thrust explains.
-// A boat that coasts farther than its file says appears to drift: the predicted path becomes
-// longer.
+// A boat that coasts farther than its file states appears to drift, which lengthens the predicted
+// path.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DriftEstimate {
     at: Option<SimTime>,
-    /// Duration of the estimate, s.
+    /// Duration of the observation, s.
     lasted_s: f64,
-    /// Surge through the water by the boat file, and the steady speed of the thrust, m/s.
+    /// Surge through the water according to the boat file, and the steady speed of the thrust, m/s.
     surge_m_s: f64,
-    /// The steady speed of the present thrust, m/s.
+    /// The steady speed of the current thrust, m/s.
     pub(super) thrust_m_s: f64,
     /// The means over a short and a long time, m/s.
     pub(super) recent_m_s: Ned,
@@ -267,7 +268,7 @@ pub(super) struct DriftEstimate {
 }
 
 impl DriftEstimate {
-    /// Updates the estimate with the steady speed ahead of the present set-point, m/s, and the
+    /// Updates the estimate with the steady forward speed of the current set-point (m/s), and the
     /// boat's heading and velocity over the ground.
     pub(super) fn observe(
         &mut self,
@@ -302,7 +303,7 @@ impl DriftEstimate {
             self.surge_m_s += change * step_s;
         }
         let rest = velocity_m_s - ahead.scaled(self.surge_m_s);
-        // Plain means at first.
+        // Use plain means at first.
         self.lasted_s += step_s;
         let towards = |mean: Ned, memory_s: f64| {
             let fraction = step_s / self.lasted_s.clamp(1e-3, memory_s);
@@ -312,7 +313,7 @@ impl DriftEstimate {
         self.drift_m_s = towards(self.drift_m_s, LASTING_S);
     }
 
-    /// Whether orders have been observed until now.
+    /// Whether the latest orders have been observed.
     pub(super) fn is_fresh(&self, now: SimTime) -> bool {
         self.at.is_some_and(|at| (now - at).as_s() <= GAP_MAX_S)
     }

@@ -17,10 +17,10 @@ use rules::field::Field;
 /// Time from the end of the debounce time to zero thrust at the boat, s: a tick, the link, the
 /// boat's own cycle.
 const COMMAND_S: f64 = 0.5;
-/// A breach by drift ends when the path has been free for longer than this, s.
+/// Time for which the path must be free to end a breach by drift, s.
 const BREACH_ENDS_S: f64 = 2.0;
 
-/// Checks that a boat is inside the geofence and can stop there.
+/// Checks that a boat is inside the geofence and can stop inside.
 #[derive(Clone, Debug)]
 pub struct GeofenceWatch {
     /// Where the boat may be.
@@ -29,7 +29,7 @@ pub struct GeofenceWatch {
     /// `None` if no boat file is known.
     coasting: Option<Coasting>,
     drift: DriftEstimate,
-    /// Breaches, present or imminent: on the straight path, and on the path with drift and turn.
+    /// Current or imminent breaches: on the straight path, and on the path with drift and turn.
     straight: Breach,
     drifting: Breach,
 }
@@ -37,13 +37,13 @@ pub struct GeofenceWatch {
 /// A breach, from its start.
 #[derive(Clone, Copy, Debug, Default)]
 struct Breach {
-    /// When it began, and when it was last seen.
+    /// When the breach began, and when it was last seen.
     between: Option<(SimTime, SimTime)>,
 }
 
 impl Breach {
-    /// Whether all is well, or has been wrong for less than `debounce_s`. A breach ends after more
-    /// than `ends_s` without a fault.
+    /// Whether the path is sound, or has been unsound for less than `debounce_s`. A breach ends
+    /// after more than `ends_s` of sound paths.
     fn is_well(&mut self, now: SimTime, is_sound: bool, (debounce_s, ends_s): (f64, f64)) -> bool {
         if is_sound {
             self.between = self
@@ -74,26 +74,27 @@ impl GeofenceWatch {
         }
     }
 
-    /// Records that the boat receives a set-point of this steady speed ahead, m/s, at this heading
-    /// and velocity over the ground.
+    /// Records that the boat, at this heading and velocity over the ground, receives a set-point
+    /// with this steady forward speed (m/s).
     pub fn note_order(&mut self, now: SimTime, ahead_m_s: f64, motion: (f64, Ned)) {
         if let Some(coasting) = &self.coasting {
             self.drift.observe(coasting, now, ahead_m_s, motion);
         }
     }
 
-    /// Whether a boat here, with this velocity over the ground and rate of turn, is inside and can
-    /// stop inside. A breach counts after the debounce time.
+    /// Whether a boat at this position, with this velocity over the ground and rate of turn, is
+    /// inside and can stop inside. A breach counts after the debounce time.
     pub fn is_inside(&mut self, now: SimTime, at: Ned, motion: (Ned, f64)) -> bool {
         let room_m = self.area.clearance_m(at);
-        // The whole path is checked, not only its end, which could lie beyond a keep-out or an
-        // inward corner.
+        // Check the whole path, not only its end, which could lie beyond a keep-out or a concave
+        // corner.
         let is_sound = |path: &Vec<Leg>| {
             let mut from = at;
             path.iter().all(|leg| {
                 let end = at + leg.end;
                 let start = std::mem::replace(&mut from, end);
-                // Slack adds up in a turn: far from the edge it exceeds what the boat can sail.
+                // Slack adds up in a turn: far from the edge it exceeds the distance that the boat
+                // can travel.
                 room_m > leg.reach_m
                     || self.area.contains_way(start, end)
                         && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
@@ -102,8 +103,8 @@ impl GeofenceWatch {
         let is_straight_sound =
             self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_sound);
         let is_drift_sound = self.drifting_path(now, motion).iter().all(is_sound);
-        // A single fix scattered across the line is not a breach. In waves a boat yaws, and its
-        // path to rest swings with it: a path that is free for a moment does not end a breach.
+        // A single fix scattered across the fence is not a breach. In waves a boat yaws, and its
+        // path to rest swings with it, so a momentarily free path does not end a breach.
         let is_well = [
             self.straight
                 .is_well(now, is_straight_sound, (self.rules.debounce_s, 0.0)),
@@ -113,7 +114,7 @@ impl GeofenceWatch {
         is_well == [true; 2]
     }
 
-    /// The paths to rest that must be free for the boat, from its position: straight on as in still
+    /// The paths to rest that must be free, from the boat's position: straight on, as in still
     /// water, ...
     fn straight_paths(&self, velocity_m_s: Ned) -> Vec<Vec<Leg>> {
         let Geofence {
@@ -184,7 +185,8 @@ impl GeofenceWatch {
         self.rules.reaction_s.max(self.rules.debounce_s + COMMAND_S)
     }
 
-    /// Where the boat comes to rest, m from here, by the longest of the predicted paths.
+    /// Where the boat comes to rest, relative to its position (m), on the longest of the predicted
+    /// paths.
     pub(crate) fn stopping_way(&self, now: SimTime, motion: (Ned, f64)) -> Ned {
         let paths = self
             .straight_paths(motion.0)

@@ -1,4 +1,4 @@
-//! Tests the geofence on fields, in polygons, and against an independent inside test.
+//! Tests the geofence on fields and in polygons, and against an independent point-in-polygon test.
 
 use super::*;
 use crate::geodesy::LocalFrame;
@@ -48,7 +48,7 @@ fn a_boat_must_be_inside_and_able_to_stop_inside() {
     }
 }
 
-/// The Surveyor of the shipped boat files.
+/// The Surveyor among the shipped boat files.
 fn surveyor() -> Coasting {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../scenarios/boats/surveyor_m1_8.toml");
@@ -58,7 +58,7 @@ fn surveyor() -> Coasting {
 /// The error caused by the prediction's quarter-second steps, m.
 const COARSE_M: f64 = 0.5;
 
-/// M / q ln(1 + q v / l): the coasting distance of a hull from a speed.
+/// M / q ln(1 + q v / l): a hull's coasting distance from a speed.
 fn coasted_m(coasting: &Coasting, speed_m_s: f64) -> f64 {
     let Coasting {
         mass_kg,
@@ -94,7 +94,7 @@ fn a_boat_coasts_as_far_as_its_file_says_or_as_was_measured() {
 
 #[test]
 fn a_slow_boat_keeps_the_distance_that_it_coasts() {
-    // The edge lies at x = 190 m. By v²/2a alone the first would need 1.0 m.
+    // The edge lies at x = 190 m. By v²/2a alone the first boat would need 1.0 m.
     for (speed_m_s, least_m) in [(0.5, 3.5), (1.0, 6.0), (1.5, 8.0), (3.0, 21.0)] {
         let mut geofence = GeofenceWatch::new(&game().field, &rules(), Some(surveyor()));
         let velocity = Ned {
@@ -131,7 +131,7 @@ fn one_fix_outside_is_not_enough() {
     }
 }
 
-/// The polygon that operators type for these points of the field.
+/// The polygon that an operator would type for these points of the field.
 fn typed(field: &Field, corners: &[Ned]) -> Vec<[f64; 2]> {
     let frame = LocalFrame::new(field.plan.datum);
     let place = |corner: &Ned| {
@@ -141,7 +141,7 @@ fn typed(field: &Field, corners: &[Ned]) -> Vec<[f64; 2]> {
     corners.iter().map(place).collect()
 }
 
-/// A star around a point: concave, and free of crossings for any radii.
+/// A star around a point: concave, and without crossings for any radii.
 fn star(centre: Ned, radii_m: &[f64]) -> Vec<Ned> {
     let step_deg = 360.0 / radii_m.len() as f64;
     radii_m
@@ -151,8 +151,8 @@ fn star(centre: Ned, radii_m: &[f64]) -> Vec<Ned> {
         .collect()
 }
 
-/// Whether a point is in a polygon, from the sum of the angles of its sides as seen from there: a
-/// full turn, or none.
+/// Whether a point is in a polygon, from the sum of the angles of the sides as seen from the point:
+/// a full turn or zero.
 fn is_seen_around(polygon: &[Ned], at: Ned) -> bool {
     let angle = |(a, b): (Ned, Ned)| {
         let a = a - at;
@@ -214,7 +214,7 @@ proptest! {
         if area.contains_way(from, to) {
             prop_assert!(all_inside, "{from:?} to {to:?} is no way inside");
         } else if all_inside {
-            // It cuts a corner between two steps, which are near it.
+            // The line cuts a corner between two steps near the corner.
             let nearest_m = along(from, to).map(|at| area.clearance_m(at)).fold(f64::INFINITY, f64::min);
             prop_assert!(nearest_m <= 0.5 * STEP_M, "{from:?} to {to:?} stays {nearest_m} m inside");
         }

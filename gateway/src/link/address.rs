@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 /// Supported speeds of a serial line, baud.
-// A Surveyor's serial speed and format are not published. These are the usual ones of NMEA devices,
-// 8N1. RTK receivers use the faster ones, and autopilots' telemetry ports 921600.
+// The serial speed and format of a Surveyor are not published. These are common for NMEA devices,
+// 8N1. RTK receivers use the faster ones, and autopilots' telemetry ports use 921600.
 const BAUDS: [u32; 9] = [
     4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600,
 ];
@@ -26,7 +26,8 @@ pub enum LinkAddress {
     Tcp(Side, HostPort),
     /// A UDP port. Our own port replies to every sender.
     Udp(Side, HostPort),
-    /// A local UDP port for its first sender only: boats send to their ground station's port.
+    /// A local UDP port that serves only its first sender: boats send to their ground station's
+    /// port.
     UdpListen(HostPort),
     /// A serial line, 8N1.
     Serial {
@@ -42,7 +43,7 @@ pub enum LinkAddress {
     },
 }
 
-/// The side of a link that an address is for.
+/// The side of a link that an address describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Connects to another program's port.
@@ -56,7 +57,7 @@ pub enum Side {
 pub struct HostPort {
     /// Name or address of the machine, IPv6 without brackets; `0.0.0.0` listens on all interfaces.
     pub host: String,
-    /// The port; 0 listens on any free one.
+    /// The port; 0 selects any free port to listen on.
     pub port: u16,
 }
 
@@ -85,7 +86,7 @@ impl LinkAddress {
         parse(text, Side::Connects).map_err(|fault| error(text, fault))
     }
 
-    /// Parses an address to listen on: those of [`LinkAddress::to_connect`], `pty`, or
+    /// Parses an address to listen on: a form of [`LinkAddress::to_connect`], `pty`, or
     /// `pty:///path/of/symlink`.
     ///
     /// # Errors
@@ -157,7 +158,7 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
 }
 
 fn host_and_port(text: &str, side: Side) -> Result<HostPort, Fault> {
-    // Split from the right because of IPv6 addresses, which end in a bracket without a port.
+    // Split from the right because of IPv6 addresses, which end in a bracket if there is no port.
     let Some((host, port)) = text
         .rsplit_once(':')
         .filter(|(_, port)| !port.ends_with(']'))

@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-/// A connection counts as good after it has received bytes for this long. The waits keep growing
-/// for a peer that accepts and closes at once, or dies after one line.
+/// Minimum time over which a good connection receives bytes. The waits keep growing for a peer that
+/// accepts and closes at once, or that dies after one line.
 pub(super) const STEADY: Duration = Duration::from_secs(1);
 
 /// Prevents a busy loop if the settings contain 0.
 const SHORTEST: Duration = Duration::from_millis(10);
 
-/// Waits that double, from the first to the longest.
+/// Waits that double from the first to the longest.
 pub(super) struct Backoff {
     first: Duration,
     longest: Duration,
@@ -29,8 +29,8 @@ impl Backoff {
     /// The wait before the next attempt.
     pub(super) fn wait(&mut self) -> Duration {
         let wait = self.next;
-        // At most a second between attempts: an uncontrolled boat travels two or three metres in
-        // that time.
+        // Wait at most a second between attempts: an uncontrolled boat travels two or three metres
+        // in that time.
         self.next = wait.saturating_mul(2).min(self.longest);
         wait
     }

@@ -1,4 +1,4 @@
-//! The side that connects, and reconnects when the connection is lost.
+//! The connecting side, which reconnects when the connection is lost.
 
 use super::address::{HostPort, LinkAddress, Side};
 use super::backoff::Backoff;
@@ -16,23 +16,23 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Maximum time of an attempt to connect. The wait between attempts counts from the start of each,
-/// so a boat that becomes reachable is connected within a second.
+/// Maximum duration of a connection attempt. The wait between attempts counts from the start of
+/// each, so a boat that becomes reachable is connected within a second.
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// How often an attempt is polled.
-// A blocking connect cannot be interrupted: a gateway asked to exit would wait for an unresponsive
+// A blocking connect cannot be interrupted: a gateway told to exit would wait for an unresponsive
 // address.
 const POLL: Duration = Duration::from_millis(5);
 
-/// Maximum unacknowledged bytes of a TCP connection, and how long they may stay so before it counts
-/// as dead.
-// A half-open connection accepts bytes until the buffer is full. These become old commands, so the
-// buffer is as small as systems allow.
+/// Maximum unacknowledged bytes of a TCP connection, and the time after which it counts as dead if
+/// they remain unacknowledged.
+// A half-open connection accepts bytes until the buffer is full. These bytes become old commands,
+// so the buffer is as small as systems allow.
 const SEND_BUFFER: usize = 4096;
 const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 
-/// Connects, serves and waits in turn until the link is closed.
+/// Connects, serves and waits, repeatedly, until the link is closed.
 pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
     let mut backoff = Backoff::new(threads.settings.retry_first, threads.settings.retry_max);
     loop {
@@ -48,7 +48,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
             Err(e) => {
                 let wait = backoff.wait();
                 let took = clock::since(begun_at);
-                // An attempt without an answer has already taken its wait.
+                // An attempt without an answer has already used up its wait.
                 let retry_in = if took < wait / 2 {
                     wait
                 } else {
@@ -67,7 +67,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
     }
 }
 
-/// An error of connecting, and what to check.
+/// A connection error, with advice on what to check.
 fn in_words(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::ConnectionRefused => {
@@ -132,7 +132,8 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     if let Some(e) = socket.take_error()? {
         return Err(e);
     }
-    // Nothing listens on this port of the ephemeral range, and our own socket got that very port.
+    // The socket connected to itself: nothing listens on this ephemeral port, and the system
+    // assigned it to us.
     if socket.local_addr()?.as_socket() == Some(address) {
         return Err(ErrorKind::ConnectionRefused.into());
     }
@@ -143,7 +144,7 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
 /// Sets the options for a TCP connection that carries commands: no delay, and early detection of a
 /// dead peer.
 pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
-    // A sentence is a packet: Nagle's algorithm would delay the second one until the first is
+    // A sentence is a packet: Nagle's algorithm would delay the second until the first is
     // acknowledged.
     socket.set_tcp_nodelay(true)?;
     socket.set_tcp_keepalive(
@@ -155,7 +156,7 @@ pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
     // Keepalive only works on idle connections. With unacknowledged bytes, Linux retransmits for a
     // quarter of an hour unless this limit is set.
     socket.set_tcp_user_timeout(Some(UNACKNOWLEDGED))?;
-    // Linux doubles the value for its own bookkeeping.
+    // Linux doubles this value for its own bookkeeping.
     socket.set_send_buffer_size(SEND_BUFFER)?;
     socket.set_read_timeout(Some(TICK))?;
     socket.set_write_timeout(Some(TICK))?;
@@ -179,13 +180,13 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
 
 /// Waits for the first datagram, and connects to its sender.
 // A single peer rather than a server: there is one boat, and the guard needs a socket on which a
-// plain write reaches it. A boat that restarts sends from another port; it is found after silence
+// plain write reaches it. A restarted boat sends from a different port; it is found when silence
 // has ended the link.
 fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
     let (socket, _) = udp_server::bind((&at.host, at.port))?;
     let start = clock::now();
     while clock::since(start) < CONNECT && !threads.is_stopped() {
-        // Only peeked at: the connection reads this datagram first.
+        // Only peek: the connection reads this datagram first.
         match socket.peek_from(&mut [0]) {
             Ok((_, from)) => {
                 socket.connect(from)?;
@@ -210,7 +211,7 @@ fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {
     let mut line = SerialPort::open(path, baud)?;
     line.set_read_timeout(TICK)?;
     line.set_write_timeout(TICK)?;
-    // Discard what arrived before the line was opened.
+    // Discard bytes that arrived before the line was opened.
     line.discard_input_buffer()?;
     Ok((Port::Serial { line, baud }, path.display().to_string()))
 }

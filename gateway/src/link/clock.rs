@@ -1,4 +1,4 @@
-//! The monotonic clock of a link, only for timeouts and time stamps.
+//! The monotonic clock of a link, used only for timeouts and time stamps.
 
 use std::time::{Duration, Instant};
 
@@ -15,5 +15,5 @@ pub(super) fn since(start: Instant) -> Duration {
     now().saturating_duration_since(start)
 }
 
-/// Maximum wait in a system call. Between calls, threads check whether to end.
+/// Maximum wait in a system call. Between calls, threads check whether they should end.
 pub(super) const TICK: Duration = Duration::from_millis(25);

@@ -17,7 +17,7 @@ pub(super) const CHUNK: usize = 64 * 1024;
 /// A serial adapter forwards bytes within this time.
 const SETTLED: Duration = Duration::from_millis(30);
 
-/// A connection to a peer that is up. Dropping it ends it; [`Connection::close`] also emits
+/// An open connection to a peer. Dropping it closes it; [`Connection::close`] also emits
 /// [`LinkEvent::Down`].
 pub(super) struct Connection {
     threads: Arc<Threads>,
@@ -34,8 +34,8 @@ impl Connection {
             peer,
             writer: None,
         };
-        // Added before `Up` is announced, so that bytes sent in response to `Up` reach this peer.
-        // The writer starts last, so that no `Written` precedes `Up`.
+        // Add the peer before `Up` is announced, so that bytes sent in response to `Up` reach this
+        // peer. The writer starts last, so that no `Written` precedes `Up`.
         threads.tell_port(connection.peer.port.descriptor());
         threads.add(&connection.peer);
         threads.emit(LinkEvent::Up {
@@ -76,7 +76,7 @@ impl Connection {
             if let Some(end) = self.peer.is_to_end() {
                 return end;
             }
-            // A peer that came up while the others were being ended has not been ended yet.
+            // A peer that came up while the others were being ended may still be up.
             if self.threads.is_stopped() {
                 return End::Stopped;
             }
@@ -103,18 +103,18 @@ impl Connection {
         }
     }
 
-    /// Ends the connection and emits `Down`.
+    /// Closes the connection and emits `Down`.
     pub(super) fn close(mut self, end: &End) {
         self.threads.remove(&self.peer);
         self.peer.end(end.clone());
         match end {
-            // Bytes still held by a lost connection are outdated commands.
+            // Bytes still queued on a lost connection are outdated commands.
             End::Lost(_) => self.peer.port.reset(),
             End::Stopped => self.peer.port.finish(),
         }
         self.threads.tell_port(None);
         if let Some(writer) = self.writer.take() {
-            // A writer that panicked has ended too.
+            // A writer that panicked has also ended.
             drop(writer.join());
         }
         self.threads.emit(LinkEvent::Down {
@@ -135,7 +135,7 @@ impl Drop for Connection {
 fn write_on(peer: &Peer, threads: &Threads) {
     let mut settled_at = clock::now();
     while let Some(request) = peer.outbox.next() {
-        // Bytes that should have been sent long ago are waiting in a stalled line.
+        // Bytes that should have been sent long ago are waiting on a stalled line.
         if request.priority() != Priority::Normal && clock::since(settled_at) >= SETTLED {
             peer.port.discard_unsent();
         }
@@ -147,7 +147,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
         {
             Ok(Wrote::All) => {
                 let at = clock::now();
-                // Reported after the system has accepted the last byte, to measure the latency of
+                // Report it after the system has accepted the last byte, to measure the latency of
                 // orders.
                 if let Some(tag) = request.settle() {
                     threads.emit(LinkEvent::Written { tag, at });
@@ -156,7 +156,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
             Ok(Wrote::Dropped) => threads.note_displaced(1),
             Err(e) => peer.end(End::Lost(format!("cannot write: {e}"))),
         }
-        // Bytes queued meanwhile can still be displaced here, but not in the driver.
+        // Bytes queued meanwhile can still be displaced in the outbox, but not in the driver.
         while clock::since(begun_at) < transit && peer.is_to_end().is_none() {
             threads.stops_within(transit.saturating_sub(clock::since(begun_at)).min(TICK));
         }

@@ -1,4 +1,4 @@
-//! What a link has in common with its users: settings, events and errors.
+//! The parts of a link that its users see: settings, events and errors.
 
 use super::address::HostPort;
 use std::io;
@@ -10,11 +10,11 @@ use thiserror::Error;
 /// The timeouts of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkSettings {
-    /// Without bytes for this long, a peer counts as lost. `None`, for the side that listens, means
-    /// never. The peer of a pseudo-terminal may stay silent; a peer of a UDP server for at most 10
-    /// s.
+    /// Time without bytes after which a peer counts as lost. For a listening link, `None` means
+    /// never. The peer of a pseudo-terminal may stay silent forever, a peer of a UDP server for at
+    /// most 10 s.
     pub silence: Option<Duration>,
-    /// The wait before the second attempt; doubles each time.
+    /// The wait before the second attempt; it then doubles each time.
     pub retry_first: Duration,
     /// Maximum wait between attempts.
     pub retry_max: Duration,
@@ -27,7 +27,7 @@ impl Default for LinkSettings {
             // UDP and serial lines never do.
             silence: Some(Duration::from_secs(3)),
             retry_first: Duration::from_millis(100),
-            // No longer back-off, because an E-stop may be waiting for the connection.
+            // No longer waits, because an E-stop may be waiting for the connection.
             retry_max: Duration::from_secs(1),
         }
     }
@@ -67,7 +67,7 @@ pub enum LinkEvent {
         retry_in: Duration,
     },
     /// Everything sent with this tag has been written to all peers that were up at the time. Not
-    /// emitted if there were none, or if one of them missed it.
+    /// emitted if there were no peers, or if one of them missed it.
     Written {
         /// The tag.
         tag: u64,
@@ -76,7 +76,7 @@ pub enum LinkEvent {
     },
 }
 
-/// Why a link cannot be opened.
+/// A reason why a link cannot be opened.
 #[derive(Debug, Error)]
 pub enum LinkError {
     /// Cannot listen on the port.
@@ -119,8 +119,8 @@ pub trait BoatLink {
     /// write has not begun.
     fn send(&self, bytes: Vec<u8>, tag: u64);
 
-    /// Like [`BoatLink::send`], for a command that stops the boat: discards earlier commands that
-    /// wait in a stalled line, where possible.
+    /// Like [`BoatLink::send`], for a command that stops the boat. Where possible, it discards
+    /// earlier commands that wait in a stalled line.
     fn send_stop(&self, bytes: Vec<u8>, tag: u64) {
         self.send(bytes, tag);
     }
@@ -128,10 +128,10 @@ pub trait BoatLink {
     /// The number of displaced writes so far, over all peers.
     fn displaced(&self) -> u64;
 
-    /// Sends a shutdown message: displaces what is queued, writes these bytes to all peers, and
-    /// waits up to `limit`. Returns whether there was a peer and the system accepted the bytes for
-    /// all of them. Bytes whose write has not begun by then stay queued. Other threads' bytes do
-    /// not displace them. Works while panicking.
+    /// Sends a shutdown message: displaces queued bytes, writes these bytes to all peers, and waits
+    /// up to `limit`. Returns whether there was a peer and the system accepted the bytes for all of
+    /// them. Bytes whose write has not begun by then stay queued. Other threads' bytes do not
+    /// displace them. Works while panicking.
     fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool;
 }
 

@@ -1,9 +1,9 @@
 //! Byte links to boats and back seats that reconnect automatically.
 //!
-//! A link runs a few threads: one that connects or accepts, and for each peer one that reads and
-//! one that writes. They report events through one callback. Write requests go through outboxes of
-//! depth one, so that a slow peer gets the newest command late instead of old ones in order.
-//! Read `connection` first, then `client`, then `port`.
+//! A link runs a few threads: one that connects or accepts, and for each peer one reader and one
+//! writer. They report events through one callback. Write requests go through outboxes of depth
+//! one, so that a slow peer gets the newest command late instead of old ones in order. Read
+//! `connection` first, then `client`, then `port`.
 
 mod address;
 mod backoff;
@@ -30,12 +30,12 @@ use std::sync::Arc;
 use std::time::Duration;
 use threads::Threads;
 
-/// How long dropping a link waits for its threads.
-// Several ticks of 25 ms in which threads notice, and a graceful close of 80 ms.
+/// Maximum wait for the threads of a dropped link.
+// A few ticks of 25 ms for threads to notice, and a graceful close of 80 ms.
 const CLOSE_MAX: Duration = Duration::from_millis(190);
 
 /// A link that reconnects automatically, on its own threads. Dropping it closes everything within
-/// 200 ms: written bytes still arrive, queued ones are lost. To send a shutdown message, use
+/// 200 ms: written bytes still arrive, but queued bytes are lost. To send a shutdown message, use
 /// [`BoatLink::send_and_wait`].
 pub struct Link {
     threads: Arc<Threads>,
@@ -45,7 +45,7 @@ pub struct Link {
 impl Link {
     /// Opens a link. Several threads call `on_event`; while it blocks, so does the link.
     ///
-    /// # Errors
+    /// [`LinkError`] if the link can never work. An unreachable peer causes [`LinkEvent::Failed`].
     /// [`LinkError`] if the link can never work. An unreachable peer is [`LinkEvent::Failed`].
     pub fn open(
         address: &LinkAddress,

@@ -1,5 +1,5 @@
-//! The outbox of a peer: a queue of depth one, in which the newest write request displaces the
-//! previous one.
+//! The outbox of a peer: a queue of depth one, where a new write request displaces the previous
+//! one.
 
 use parking_lot::{Condvar, Mutex};
 use std::sync::Arc;
@@ -9,14 +9,14 @@ use std::time::Duration;
 pub(super) enum Priority {
     /// Displaced by any later request.
     Normal,
-    /// Like normal, but first discards what the system still holds of earlier requests.
+    /// Like normal, but first discards bytes of earlier requests that the system still holds.
     Stop,
     /// Not displaced by normal requests: a stop must not lose the race against a set-point.
     Shutdown,
 }
 
-/// Bytes to write to one peer. If it is dropped before they are written, its completion counts them
-/// as lost.
+/// Bytes to write to one peer. If the request is dropped before they are written, its completion
+/// counts them as lost.
 pub(super) struct WriteRequest {
     bytes: Arc<Vec<u8>>,
     completion: Arc<Completion>,
@@ -51,7 +51,7 @@ struct State {
 impl Completion {
     /// A completion for bytes that go to this many peers.
     pub(super) fn new(tag: Option<u64>, peers: usize) -> Arc<Completion> {
-        // Without peers the bytes are lost.
+        // Without peers, the bytes are lost.
         let count = Mutex::new(Count {
             open: peers,
             lost: peers == 0,
@@ -130,8 +130,8 @@ impl Outbox {
         }
     }
 
-    /// Queues a request. Returns whether a request was displaced: the queued one, or this one by a
-    /// shutdown message.
+    /// Queues a request. Returns whether a request was displaced, either the queued one or this one
+    /// (by a shutdown message).
     pub(super) fn push(&self, request: WriteRequest) -> bool {
         let mut state = self.state.lock();
         if state.shut {
@@ -143,7 +143,7 @@ impl Outbox {
                 .as_ref()
                 .is_some_and(|queued| queued.priority == Priority::Shutdown)
         {
-            // Nothing may displace the final message to a boat.
+            // Nothing may displace a boat's final message.
             return true;
         }
         // Depth one: a slow line gets the newest command late instead of all old ones in order.
@@ -152,7 +152,7 @@ impl Outbox {
         displaced
     }
 
-    /// Waits for a request. Returns `None` after the outbox was shut.
+    /// Waits for a request. Returns `None` once the outbox is shut.
     pub(super) fn next(&self) -> Option<WriteRequest> {
         let mut state = self.state.lock();
         self.changed
@@ -160,7 +160,7 @@ impl Outbox {
         state.queued.take()
     }
 
-    /// Drops the queued request and rejects all later ones.
+    /// Drops the queued request and rejects all later requests.
     pub(super) fn shut(&self) {
         let mut state = self.state.lock();
         state.shut = true;

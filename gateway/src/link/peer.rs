@@ -41,14 +41,14 @@ impl Peer {
         }
     }
 
-    /// Ends the connection; the first reason given counts.
+    /// Ends the connection. Only the first reason is kept.
     pub(super) fn end(&self, end: End) {
         // The first reason is the cause; the other thread's errors follow from it.
         self.end.lock().get_or_insert(end);
         self.outbox.shut();
     }
 
-    /// Why the connection must end, if it must.
+    /// Why the connection must end, if so.
     pub(super) fn is_to_end(&self) -> Option<End> {
         self.end.lock().clone()
     }

@@ -10,11 +10,11 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A peer that accepts no bytes for this long is lost.
+/// Time without accepting bytes after which a peer is lost.
 pub(super) const STALL: Duration = Duration::from_secs(2);
 
 /// How long a graceful close waits for the peer.
-// A radio round trip, well within the time that a closing link has.
+// A radio round trip, well within the time limit of a closing link.
 const LINGER: Duration = Duration::from_millis(80);
 
 /// A socket, a serial line or a pseudo-terminal. Two threads may read and write at the same time.
@@ -22,7 +22,7 @@ pub(super) enum Port {
     Tcp(TcpStream),
     /// Connected.
     Udp(UdpSocket),
-    /// The server reads the socket, which all its peers share.
+    /// Shared by all peers of the server, which reads it.
     UdpTo(Arc<UdpSocket>, SocketAddr),
     Serial {
         line: SerialPort,
@@ -42,12 +42,12 @@ pub(super) enum Received {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wrote {
     All,
-    /// No free space, which is not an error.
+    /// The line had no space left, which is not an error.
     Dropped,
 }
 
 impl Port {
-    /// The port's descriptor. None if peers share the port.
+    /// The port's descriptor; `None` if peers share the port.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         match self {
             Port::Tcp(stream) => Some(stream.as_fd()),
@@ -122,7 +122,7 @@ impl Port {
         }
     }
 
-    /// Discards old unread bytes where that is possible.
+    /// Discards old unread bytes where possible.
     pub(super) fn flush_if_stale(&self) -> io::Result<()> {
         if let Port::Pty(pty) = self {
             pty.flush_if_stale()
@@ -148,7 +148,7 @@ impl Port {
     pub(super) fn finish(&self) {
         let Port::Tcp(stream) = self else { return };
         // Closing a socket with unread bytes makes the system send a reset, which may overtake the
-        // last bytes written. Read until the other side has closed too, for a moment.
+        // last bytes written. Read briefly, until the other side has also closed.
         if stream.shutdown(Shutdown::Write).is_err() {
             return;
         }
@@ -173,8 +173,8 @@ impl Port {
         }
     }
 
-    /// Discards what a serial line has accepted but not sent. No test covers it: pseudo-terminals
-    /// hold nothing back.
+    /// Discards what a serial line has accepted but not sent. No test covers this, because
+    /// pseudo-terminals hold nothing back.
     pub(super) fn discard_unsent(&self) {
         if let Port::Serial { line, .. } = self {
             // If it cannot be discarded, it is sent as before.
@@ -182,8 +182,8 @@ impl Port {
         }
     }
 
-    /// The time to transmit this many bytes, if it is long. A serial driver accepts 4 KiB at once,
-    /// which at 4800 baud are 8 s of old commands.
+    /// The time to transmit this many bytes, if long. A serial driver accepts 4 KiB at once, which
+    /// at 4800 baud is 8 s of old commands.
     pub(super) fn transit(&self, count: usize) -> Duration {
         // Eight data bits, a start bit and a stop bit.
         if let Port::Serial { baud, .. } = self {
@@ -198,8 +198,8 @@ impl Port {
 fn is_pause(error: &io::Error) -> bool {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::Interrupted => true,
-        // With a system error number it is TCP's ETIMEDOUT, and the connection is lost; without one
-        // it is a timeout that we set.
+        // With a system error number it is TCP's ETIMEDOUT, and the connection is lost. Without one
+        // it is our own timeout.
         ErrorKind::TimedOut => error.raw_os_error().is_none(),
         _ => false,
     }

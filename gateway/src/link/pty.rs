@@ -17,12 +17,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Bytes unread for this long are discarded: a program that opens the terminal later needs the
+/// Time after which unread bytes are discarded: a program that opens the terminal later needs the
 /// boat's current position, not an old one.
 const UNREAD_MAX: Duration = Duration::from_millis(500);
 
-/// Both ends of a pseudo-terminal. We keep the slave open too: with no process on it the master
-/// could not be written, and the next process would find echo and line editing enabled.
+/// Both ends of a pseudo-terminal. We keep the slave open, too: with no process on it, the master
+/// could not be written to, and the next process would find echo and line editing enabled.
 pub(super) struct Pty {
     master: SerialPort,
     slave: OwnedFd,
@@ -32,7 +32,7 @@ pub(super) struct Pty {
     flushes: AtomicU64,
 }
 
-/// What is known about the reader.
+/// The state of the reader.
 #[derive(Default)]
 struct ReaderState {
     /// Start of the period during which there have always been unread bytes.
@@ -44,12 +44,12 @@ struct ReaderState {
 impl Pty {
     /// Opens a raw pseudo-terminal, with a symlink to it if requested.
     pub(super) fn open(link: Option<&Path>) -> Result<Pty, LinkError> {
-        // The slave stays open here too: on Linux, a master whose last slave closes returns errors
-        // until a process opens it again.
+        // The slave stays open in this process, too: on Linux, a master whose last slave closes
+        // returns errors until a process opens it again.
         let (master, slave, path) = pair().map_err(|e| LinkError::Pty {
             reason: e.to_string(),
         })?;
-        // Before the symlink, so that a failure leaves nothing behind.
+        // Before the symlink, so that a failure leaves none behind.
         let mut pty = Pty {
             master,
             slave,
@@ -109,7 +109,7 @@ impl Pty {
         }
     }
 
-    /// How long there have always been unread bytes.
+    /// How long there have been unread bytes without interruption.
     fn unread_for(&self, reader: &mut ReaderState) -> io::Result<Duration> {
         // No event reports a read, but the fill level of the slave's queue shows it.
         let is_unread = rustix::io::ioctl_fionread(&self.slave)? > 0;
@@ -121,7 +121,7 @@ impl Pty {
     fn discard(&self, reader: &mut ReaderState) -> io::Result<()> {
         reader.unread_since = None;
         self.flushes.fetch_add(1, Ordering::Relaxed);
-        // On the slave: flushing the master would discard what others wrote to us.
+        // Flush the slave: flushing the master would discard bytes that others wrote to us.
         Ok(rustix::termios::tcflush(
             &self.slave,
             QueueSelector::IFlush,
@@ -162,14 +162,14 @@ fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
     Ok((master, slave, path))
 }
 
-/// Links `link` to `target`. Replaces an old symlink, but nothing else.
+/// Links `link` to `target`. Replaces an old symlink, but no other file.
 fn make_symlink(link: &Path, target: &Path) -> Result<(), LinkError> {
     let refused = |reason: String| LinkError::Symlink {
         path: link.to_owned(),
         reason,
     };
-    // Replaces symlinks, because a killed process leaves its own behind. Anything else may be a
-    // user's file.
+    // Replace only symlinks: a killed process leaves its own behind, but any other file may be a
+    // user's.
     match fs::symlink_metadata(link) {
         Ok(found) if !found.is_symlink() => {
             return Err(refused(

@@ -1,4 +1,4 @@
-//! Serves a pseudo-terminal of our own as a link, one connection at a time.
+//! Serves our own pseudo-terminal as a link, one connection at a time.
 
 use super::connection::Connection;
 use super::interface::LinkEvent;
@@ -7,7 +7,7 @@ use super::pty::Pty;
 use super::threads::Threads;
 use std::sync::Arc;
 
-/// Serves each process that opens it, until the link is closed.
+/// Serves each process that opens the terminal, until the link is closed.
 pub(super) fn run(threads: &Arc<Threads>, pty: &Arc<Pty>) {
     let retry_in = threads.settings.retry_first;
     loop {

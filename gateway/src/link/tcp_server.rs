@@ -1,4 +1,4 @@
-//! A TCP port of our own for several peers at once.
+//! Our own TCP port, which serves several peers at once.
 
 use super::client::tune;
 use super::clock::TICK;
@@ -25,7 +25,7 @@ pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
         match listener.accept() {
             Ok((stream, from)) => serve_peer(threads, stream, from),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-            // For example too many open files, which may pass.
+            // For example too many open files, which may be temporary.
             Err(_) if threads.stops_within(TICK) => return,
             Err(_) => {}
         }
@@ -37,7 +37,7 @@ fn serve_peer(threads: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
     if threads.count() >= PEERS_MAX {
         return;
     }
-    // A peer that is already gone, or that gets no thread, finds the connection closed.
+    // A peer that has left, or for which there is no thread, finds the connection closed.
     let Ok(stream) = tune(stream.into()) else {
         return;
     };

@@ -19,7 +19,7 @@ pub(super) struct Threads {
     pub(super) settings: LinkSettings,
     on_event: Box<dyn Fn(LinkEvent) + Send + Sync>,
     on_port: Option<OnPort>,
-    /// Peers that are up. Never locked during a wait.
+    /// Peers that are up. Never locked while waiting.
     peers: Mutex<Vec<Arc<Peer>>>,
     numbers: AtomicU32,
     displaced: AtomicU64,
@@ -66,8 +66,8 @@ impl Threads {
         name: &str,
         work: impl FnOnce() + Send + 'static,
     ) -> io::Result<JoinHandle<()>> {
-        // Counted before the thread starts, so that a link that closes at this moment waits for it
-        // too. If the spawn fails, dropping the guard undoes it.
+        // Count the thread before it starts, so that a link closing at this moment also waits for
+        // it. If the spawn fails, dropping the guard undoes it.
         self.state.lock().running += 1;
         let running = RunningThread(Arc::clone(self));
         thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -83,7 +83,8 @@ impl Threads {
         }
     }
 
-    /// Calls the callback. No lock may be held, because the callback may call anything.
+    /// Calls the callback. The caller must hold no lock, because the callback may call any
+    /// function.
     pub(super) fn emit(&self, event: LinkEvent) {
         (self.on_event)(event);
     }
@@ -114,10 +115,10 @@ impl Threads {
         priority: Priority,
     ) -> Arc<Completion> {
         let bytes = Arc::new(bytes);
-        // Held to the end, so that all peers get the same order.
+        // Hold the lock to the end, so that all peers get the same order.
         let peers = self.peers.lock();
-        // The number of current peers: one that connects later does not get this, so nothing may
-        // wait for it.
+        // The number of current peers. A peer that connects later does not get this message, so
+        // nothing may wait for it.
         let completion = Completion::new(tag, peers.len());
         let displaced = peers
             .iter()
@@ -145,7 +146,7 @@ impl Threads {
         for peer in self.peers.lock().iter() {
             peer.end(End::Stopped);
         }
-        // A thread that is still running hangs in its callback and ends after it.
+        // A thread that is still running hangs in its callback, and ends after that.
         drop(self.wait(limit, |state| state.running > 0));
     }
 
@@ -153,7 +154,7 @@ impl Threads {
         self.state.lock().stopped
     }
 
-    /// Waits this long or until the link is closed; returns whether it is.
+    /// Waits for this time or until the link is closed; returns whether it is closed.
     pub(super) fn stops_within(&self, limit: Duration) -> bool {
         self.wait(limit, |state| !state.stopped).stopped
     }

@@ -1,4 +1,4 @@
-//! A UDP port of our own; its peers are the recent senders.
+//! Our own UDP port; its peers are the recent senders.
 
 use super::clock::{self, TICK};
 use super::connection::{CHUNK, Connection};
@@ -11,7 +11,7 @@ use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A peer that is silent for this long is forgotten. The settings may only shorten this time.
+/// Silence after which a peer is forgotten. The settings may only shorten this time.
 const IDLE_MAX: Duration = Duration::from_secs(10);
 
 struct UdpPeer {
@@ -67,7 +67,7 @@ fn receive(
     let peer = if let Some(peer) = known {
         peer.received_at = at;
         peer.connection.peer.number
-    // Forged senders must not start a thread each.
+    // Forged senders must not each start a thread.
     } else if peers.len() < PEERS_MAX {
         let port = Port::UdpTo(Arc::clone(socket), from);
         // Out of threads; the peer may send again later.
@@ -93,7 +93,7 @@ fn receive(
     }
 }
 
-/// The first peer whose connection must end, with the reason.
+/// The first peer whose connection must end, and why.
 fn first_to_close(peers: &[UdpPeer], silence_max: Duration) -> Option<(usize, End)> {
     let end = |peer: &UdpPeer| {
         let silent = || {

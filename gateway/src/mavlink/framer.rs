@@ -1,7 +1,7 @@
 //! Splits incoming bytes into messages, and counts what it discards.
 //!
-//! It keeps at most one frame. After damage it searches for the next frame from the byte after the
-//! start of the damaged one, so it still finds a frame inside a wrongly stated length.
+//! Keeps at most one frame. After a damaged frame, the search continues from the byte after its
+//! start, so that a frame inside a wrongly stated length is still found.
 
 use super::dialect::MavMessage;
 use ::mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, calculate_crc};
@@ -61,7 +61,7 @@ pub enum Frame {
     Unreadable(Unreadable),
 }
 
-/// Counts of what passed through a [`Framer`].
+/// Counts of frames and bytes read by a [`Framer`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Messages read.
@@ -72,7 +72,8 @@ pub struct Counts {
     pub garbage: u64,
     /// Messages with a value that the dialect does not know.
     pub unreadable: u64,
-    /// Messages unknown to the dialect, by number; each counts once the next frame begins after it.
+    /// Messages unknown to the dialect, by number; each is counted when the next frame begins after
+    /// it.
     pub unknown: BTreeMap<u32, u64>,
 }
 
@@ -165,8 +166,8 @@ impl Framer {
         self.buffer.clear();
     }
 
-    /// Accepts bytes in any split, with any garbage. Calls `take` with each message with a valid
-    /// checksum, in order.
+    /// Accepts bytes, however they are split and with any garbage. Calls `take` with each message
+    /// with a valid checksum, in order.
     pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(Received)) {
         self.push_frames(bytes, &mut |frame| {
             if let Frame::Read(received) = frame {
@@ -210,10 +211,10 @@ impl Framer {
     /// Skips bytes that begin like a frame of an unknown message; returns the number of bytes
     /// consumed, 0 while undecided.
     fn pass_unknown(&mut self, layout: &Layout, bytes: &[u8]) -> usize {
-        // A checksum includes a byte that only the message's definition contains, so it cannot be
-        // checked for an unknown message. Noise that looks like its start is detected by a valid
-        // frame within its stated length, or by what follows it. More bytes never change a decision
-        // made with fewer, so the result does not depend on the split.
+        // A checksum includes a byte from the message's definition, so it cannot be checked for an
+        // unknown message. Noise that looks like a frame start is detected by a valid frame within
+        // the stated length, or by the bytes after it. More bytes never change a decision made with
+        // fewer bytes, so the result does not depend on the split.
         let inside = &bytes[..layout.len.min(bytes.len())];
         let is_noise = (1..inside.len()).any(|at| begins_with_good_frame(&inside[at..]));
         match bytes.get(layout.len) {
@@ -247,8 +248,8 @@ impl Framer {
         if !layout.has_right_checksum(frame) {
             self.counts.bad_checksum += 1;
             self.counts.garbage += 1;
-            // One byte and not the whole frame: a false start inside other data would swallow real
-            // frames within its stated length.
+            // Skip one byte, not the whole frame: a false start inside other data would swallow
+            // real frames within its stated length.
             return 1;
         }
         match MavMessage::parse(version, id, &frame[start..end]) {

@@ -1,4 +1,5 @@
-//! MAVLink as ArduPilot's boats speak it: bytes to messages and back, without ports or clocks.
+//! MAVLink as used by ArduPilot's boats: converts bytes to messages and back, without ports or
+//! clocks.
 //!
 //! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2;
 //! reads versions 1 and 2.
@@ -39,8 +40,8 @@ impl Writer {
         }
     }
 
-    /// Appends a message that the dialect cannot express, from its number, the byte of its
-    /// definition that enters the checksum, and its payload.
+    /// Appends a message that the dialect cannot express, from its number, the CRC byte of its
+    /// definition, and its payload.
     pub fn write_raw(&mut self, id: u32, extra_crc: u8, payload: &[u8], out: &mut Vec<u8>) {
         // Version 2 omits trailing zeros, except for the first byte.
         let len = payload
@@ -77,7 +78,7 @@ impl Writer {
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message(header, message);
         out.extend_from_slice(frame.raw_bytes());
-        // Receivers count lost frames by gaps in the sequence.
+        // Receivers count lost frames from gaps in the sequence numbers.
         self.sequence = self.sequence.wrapping_add(1);
     }
 }

@@ -1,11 +1,11 @@
-//! The modes of ArduPilot's Rover, which boats also run, by their numbers in HEARTBEAT.
+//! The modes of ArduPilot Rover, which also runs on boats, by their numbers in HEARTBEAT.
 
 /// A mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoverMode {
-    /// Steering and throttle by the remote control.
+    /// Steering and throttle follow the remote control.
     Manual,
-    /// Rate of turn and speed by the remote control.
+    /// Rate of turn and speed follow the remote control.
     Acro,
     /// Like `Acro`, without turning over.
     Steering,
@@ -15,16 +15,17 @@ pub enum RoverMode {
     Loiter,
     /// Follows the uploaded mission.
     Auto,
-    /// Goes to its home.
+    /// Returns to its home.
     Rtl,
     /// Returns home along its track.
     SmartRtl,
     /// Follows set-points.
     Guided,
-    /// Starts up.
+    /// Is starting up.
     Initialising,
     /// Any other number.
-    // The number is kept, and the mode is treated as another operator's command: new versions add
+    // The number is kept, and the mode is treated as another operator's command, since new versions
+    // add modes.
     // new modes.
     Other(u32),
 }

@@ -1,12 +1,12 @@
-//! A message in readable form.
+//! A message as a readable string.
 
 use super::dialect::MavMessage;
 
-/// The delimiters of a text in the crate's output.
+/// The delimiters of a string in the crate's output.
 const BEGIN: &str = "CharArray { data: [";
 const END: &str = " }";
 
-/// All fields of a message, with its texts as text: the crate prints character codes.
+/// All fields of a message, with strings as text: the crate prints character codes.
 pub fn message_text(message: &MavMessage) -> String {
     let printed = format!("{message:?}");
     let mut parts = printed.split(BEGIN);

@@ -4,7 +4,7 @@ use primitives::SimTime;
 use serde::{Deserialize, Serialize};
 use time::{Month, UtcDateTime};
 
-/// Milliseconds in a day, plus one second for a day that ends with a leap second.
+/// Milliseconds in a day without a leap second.
 const DAY_MS: u32 = 86_400_000;
 
 /// A time of day, UTC, in milliseconds since midnight.
@@ -22,7 +22,7 @@ impl TimeOfDay {
         if decimals.is_empty() || !decimals.bytes().all(|byte| byte.is_ascii_digit()) {
             return None;
         }
-        // Truncated to milliseconds: rounding could carry into the next second.
+        // Truncate to milliseconds: rounding could carry into the next second.
         let digit = |i: usize| u32::from(decimals.as_bytes().get(i).map_or(0, |byte| byte - b'0'));
         let ms = digit(0) * 100 + digit(1) * 10 + digit(2);
         // Leap seconds are inserted at the end of a UTC day only.
@@ -31,10 +31,10 @@ impl TimeOfDay {
         known.then_some(TimeOfDay(((hour * 60 + minute) * 60 + second) * 1000 + ms))
     }
 
-    /// The text of its field; empty for a time beyond the day.
+    /// The contents of its field; empty for a time beyond the end of the day.
     pub(super) fn text(self) -> Option<String> {
         let ms = Some(self.0).filter(|ms| *ms < DAY_MS + 1000)?;
-        // A leap second continues the last minute.
+        // A leap second extends the last minute.
         let (minute, ms) = if ms < DAY_MS {
             (ms / 60_000, ms % 60_000)
         } else {
@@ -53,17 +53,17 @@ impl TimeOfDay {
         TimeOfDay(ms.rem_euclid(i64::from(DAY_MS)) as u32)
     }
 
-    /// The time from `other` to this one, s: the shorter way around the clock, negative if this one
-    /// is earlier.
+    /// The time from `other` to this time, s, the shorter way around the clock; negative if this
+    /// time is earlier.
     pub fn since_s(self, other: TimeOfDay) -> f64 {
         let day_s = f64::from(DAY_MS) * 1e-3;
         let apart_s = (f64::from(self.0) - f64::from(other.0)) * 1e-3;
-        // The shorter way across midnight: the day is unknown without a date.
+        // Take the shorter way across midnight: without a date the day is unknown.
         apart_s - day_s * (apart_s / day_s).round()
     }
 }
 
-/// The date and the time of day at this UTC, ns since 1970.
+/// The date and time of day for a UTC time, ns since 1970.
 pub fn date_and_time(utc_ns: u64) -> (Date, TimeOfDay) {
     let at = UtcDateTime::from_unix_timestamp_nanos(i128::from(utc_ns))
         .unwrap_or(UtcDateTime::UNIX_EPOCH);
@@ -103,7 +103,7 @@ impl Date {
         .filter(|date| date.is_valid())
     }
 
-    /// The text of its field `ddmmyy`; empty for a date that a two-digit year cannot express.
+    /// The contents of its field `ddmmyy`; empty for a date that a two-digit year cannot express.
     pub(super) fn text(self) -> Option<String> {
         let known = self.is_valid() && (1980..2080).contains(&self.year);
         known.then(|| format!("{:02}{:02}{:02}", self.day, self.month, self.year % 100))
@@ -114,7 +114,7 @@ impl Date {
         self.in_calendar().is_some()
     }
 
-    /// The days from `other` to this date, negative if this one is earlier.
+    /// The days from `other` to this date; negative if this date is earlier.
     pub fn days_since(self, other: Date) -> i64 {
         let day = |date: Date| {
             date.in_calendar()

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How a fix was made, by its number in GGA.
-// Without `Ord`: its numbers are names, and comparing them ranked dead reckoning (6) above RTK (4).
+/// The type of a fix, by its number in GGA.
+// No `Ord`: the numbers are names, and comparing them ranked dead reckoning (6) above RTK (4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct FixQuality(u8);
@@ -18,18 +18,18 @@ impl FixQuality {
         FixQuality(number)
     }
 
-    /// Whether it is a satellite fix at least as good as `required`.
+    /// Whether this is a satellite fix at least as good as `required`.
     pub fn meets(self, required: FixQuality) -> bool {
         self.is_fix() && self.rank() >= required.rank()
     }
 
-    /// Whether it comes from satellites. Dead reckoning, manual input and simulators do not measure
-    /// a position.
+    /// Whether the fix comes from satellites. Dead reckoning, manual input and simulators do not
+    /// measure a position.
     pub fn is_fix(self) -> bool {
         self.rank() > 0
     }
 
-    /// The quality as text.
+    /// The quality as a string.
     pub fn in_words(self) -> &'static str {
         match self.0 {
             0 => "no fix",
@@ -45,7 +45,7 @@ impl FixQuality {
         }
     }
 
-    /// Its rank, from no fix to the best.
+    /// The rank, from no fix to the best.
     fn rank(self) -> u8 {
         match self.0 {
             1 => 1,

@@ -1,22 +1,22 @@
 //! Splits incoming bytes into sentences, and counts what it discards.
 //!
 //! It keeps at most one sentence, in a buffer of fixed size, so no peer can make it grow. A `$`
-//! always starts a new sentence, so the next complete one is found after any noise.
+//! always starts a new sentence, so the next complete sentence is found after any noise.
 
 use super::checksum;
 use serde::{Deserialize, Serialize};
 
-/// Maximum bytes of a sentence read, with `$` and CR LF. The standard says 82, but receivers that
-/// send minutes with seven decimal places send GGA sentences of 88.
+/// Maximum bytes of a sentence to read, with `$` and CR LF. The standard says 82, but receivers
+/// that send minutes with seven decimal places send GGA sentences of 88.
 pub const ACCEPTED_MAX: usize = 256;
 
-/// Maximum bytes between `$` and the line's end: body, `*` and two digits.
+/// Maximum bytes between `$` and the end of the line: body, `*` and two digits.
 const CONTENT_MAX: usize = ACCEPTED_MAX - 3;
 
-/// Counts of what passed through a [`Framer`].
+/// Counts of the input of a [`Framer`].
 ///
 /// Every `$` ever pushed is in exactly one of `sentences`, `bad_checksum`, `overlong` and `broken`,
-/// except for one that may still be incomplete.
+/// except for one in a sentence that may still be incomplete.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Sentences with a valid checksum.
@@ -25,7 +25,7 @@ pub struct Counts {
     pub bad_checksum: u64,
     /// Sentences discarded because they exceeded [`ACCEPTED_MAX`].
     pub overlong: u64,
-    /// Bytes outside sentences, not counting CR and LF. The rest of an abandoned sentence is
+    /// Bytes outside sentences, except CR and LF. The rest of an abandoned sentence counts as
     /// outside.
     pub garbage: u64,
     /// A `$` without a well-formed end: a control or non-ASCII byte, or a missing checksum.
@@ -35,7 +35,7 @@ pub struct Counts {
 /// A line that looked like a sentence but was not one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rejected {
-    /// The line from its `$` on, as far as it was stored.
+    /// The stored part of the line, from its `$`.
     pub line: String,
     /// The fault.
     pub why: &'static str,
@@ -58,7 +58,7 @@ impl Default for Framer {
 }
 
 impl Framer {
-    /// A framer that waits for its first `$`.
+    /// A framer waiting for its first `$`.
     pub fn new() -> Framer {
         Framer {
             content: [0; CONTENT_MAX],
@@ -68,10 +68,10 @@ impl Framer {
         }
     }
 
-    /// Accepts bytes in any split, with any garbage. Calls `take` with the body (between `$` and
-    /// `*`, ASCII) of each sentence with a valid checksum, in order.
+    /// Accepts bytes, however they are split and with any garbage. Calls `take` with the body
+    /// (between `$` and `*`, ASCII) of each sentence with a valid checksum, in order.
     ///
-    /// A sentence ends with CR, LF or the next `$`, whichever comes first, so a peer may send only
+    /// A sentence ends with CR, LF or the next `$`, whichever comes first, so a peer may use only
     /// one of them. Spaces and NULs after the checksum are padding.
     pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(&str)) {
         for &byte in bytes {
@@ -83,7 +83,7 @@ impl Framer {
                     self.filled = Some(0);
                 }
                 (b'\r' | b'\n', None) => {}
-                // Either one ends it: some devices send only LF.
+                // Either character ends it: some devices send only LF.
                 (b'\r' | b'\n', Some(filled)) => self.end(filled, take),
                 (b' '..=b'~', Some(filled)) if filled < CONTENT_MAX => {
                     self.content[filled] = byte;

@@ -10,7 +10,7 @@ use primitives::LatLon;
 pub(super) struct Layout<'a> {
     /// Minimum number of data fields for reading.
     pub(super) fields_min: usize,
-    /// Its fields in order; those missing from a shorter sentence are read as empty.
+    /// The fields in order; those missing from a shorter sentence are read as empty.
     pub(super) fields: Vec<Field<'a>>,
 }
 
@@ -32,8 +32,8 @@ pub(super) enum Field<'a> {
     Required(&'a mut f64, Format, &'static str),
     /// A number that is read but written as an empty field.
     ReadOnly(&'a mut Option<f64>),
-    /// Two fields: a magnitude to one decimal place, and `E` for a positive or `W` for a negative
-    /// number.
+    /// Two fields: a magnitude to one decimal place, and `E` if the number is positive or `W` if it
+    /// is negative.
     East(&'a mut Option<f64>),
     /// An optional small integer, zero-padded to this width.
     Whole(&'a mut Option<u8>, usize),
@@ -49,7 +49,7 @@ pub(super) enum Field<'a> {
     Mode(&'a mut Mode),
     /// An optional operator number.
     Operator(&'a mut Option<Operator>),
-    /// `A` for a valid fix, `V` for an invalid one; its mode indicator comes this many fields
+    /// `A` for a valid fix, `V` for an invalid one; the mode indicator comes this many fields
     /// later.
     ValidFix(&'a mut bool, usize),
     /// An optional time `hhmmss.ss`.
@@ -70,9 +70,9 @@ pub(super) struct Format {
     pub(super) decimals: usize,
     /// Zero-padded to this width.
     pub(super) width: usize,
-    /// Whether it is normalised to [0, 360).
+    /// Whether to normalise it to [0, 360).
     pub(super) compass: bool,
-    /// Whether trailing zeros are omitted.
+    /// Whether to omit trailing zeros.
     pub(super) brief: bool,
 }
 
@@ -107,7 +107,7 @@ pub(super) const COMPASS: Format = Format {
 };
 
 impl Format {
-    /// The text of a number, never `-0`; empty for a missing or non-finite number.
+    /// The digits of a number, never `-0`; empty for a missing or non-finite number.
     pub(super) fn text(self, number: Option<f64>) -> String {
         let Some(number) = number.filter(|number| number.is_finite()) else {
             return String::new();
@@ -132,7 +132,7 @@ impl Format {
     }
 }
 
-/// An angle normalised to [0, 360) so that it does not round up to 360 at this precision.
+/// An angle normalised to [0, 360) that does not round up to 360 at this precision.
 fn compass_deg(angle_deg: f64, decimals: usize) -> f64 {
     let turned = angle_deg.rem_euclid(360.0);
     let steps_per_deg = [1.0, 10.0, 100.0, 1000.0][decimals];

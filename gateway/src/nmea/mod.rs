@@ -1,11 +1,11 @@
-//! NMEA 0183 as spoken by a Surveyor and similar devices: bytes to sentences and back, without
-//! ports or clocks.
+//! NMEA 0183 as used by a Surveyor and similar devices: converts bytes to sentences and back,
+//! without ports or clocks.
 //!
-//! [`Framer`] splits a stream into sentences, [`Sentence::parse`] reads one, [`Sentence::write`]
-//! writes one. Both use the table of fields of each kind in `surveyor` or `standard`. Reading is
-//! tolerant where real boats differ (extra fields, leading zeros, unusual talkers) and strict where
-//! a wrong guess would move a boat. The output is acceptable to the strictest known reader, and
-//! never contains a non-finite number.
+//! [`Framer`] splits a stream into sentences, [`Sentence::parse`] reads one, and
+//! [`Sentence::write`] writes one. Both use the field tables in `surveyor` and `standard`. Reading
+//! is tolerant where real boats differ (extra fields, leading zeros, unusual talkers) and strict
+//! where a wrong guess would move a boat. The output is acceptable to the strictest known reader,
+//! and never contains a non-finite number.
 
 mod date_time;
 #[cfg(test)]
@@ -39,13 +39,13 @@ use reader::Reader;
 use thiserror::Error;
 use writer::Writer;
 
-/// A knot, m/s.
+/// One knot in m/s.
 pub const M_S_PER_KN: f64 = 1852.0 / 3600.0;
 
-/// Maximum bytes of a sentence written, with `$` and CR LF (NMEA 0183 v3.01, 5.3).
+/// Maximum bytes of a written sentence, with `$` and CR LF (NMEA 0183 v3.01, 5.3).
 pub const EMITTED_MAX: usize = 82;
 
-/// A sentence, read or to be written.
+/// A sentence, received or to be sent.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sentence {
     /// `PSEAC`: a command to the boat.
@@ -58,9 +58,9 @@ pub enum Sentence {
     ControlState(ControlState),
     /// `PSEAG`: the boat's error code.
     BoatError(BoatError),
-    /// `PSEAR`: settings of a mission that is being uploaded.
+    /// `PSEAR`: settings of a mission being uploaded.
     MissionSettings(MissionSettings),
-    /// `OIWPL`: a waypoint of a mission that is being uploaded.
+    /// `OIWPL`: a waypoint of a mission being uploaded.
     Waypoint(Waypoint),
     /// `GGA`: a fix.
     Gga(Gga),
@@ -76,23 +76,23 @@ pub enum Sentence {
     Zda(Zda),
 }
 
-/// Why this codec rejects a body.
+/// Why a body is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ParseError {
     /// No supported sentence has this address.
     #[error("{address}: unsupported sentence")]
     Unknown {
-        /// The text before the first comma.
+        /// The characters before the first comma.
         address: String,
     },
-    /// A field does not fit the sentence's layout.
+    /// A field does not match the sentence's layout.
     #[error("{address} field {field} is {found:?}, expected {expected}")]
     Field {
-        /// The text before the first comma.
+        /// The characters before the first comma.
         address: String,
         /// The data field, counted from 1.
         field: usize,
-        /// Its text.
+        /// Its contents.
         found: String,
         /// The allowed contents.
         expected: &'static str,
@@ -100,7 +100,7 @@ pub enum ParseError {
     /// The sentence is too short.
     #[error("{address} has {found} data fields, expected {expected} or more")]
     TooFew {
-        /// The text before the first comma.
+        /// The characters before the first comma.
         address: String,
         /// The number of data fields found.
         found: usize,
@@ -110,7 +110,7 @@ pub enum ParseError {
 }
 
 impl Sentence {
-    /// Parses a body (the text between `$` and `*`).
+    /// Parses a body (the characters between `$` and `*`).
     ///
     /// # Errors
     /// [`ParseError::Unknown`] for an unsupported sentence, other errors for a malformed one.
@@ -134,7 +134,7 @@ impl Sentence {
     /// A non-finite number becomes an empty field, as does any field that would make the sentence
     /// too long.
     pub fn line(&self) -> String {
-        // Rounded before writing, so that thrust and difference together still stay within 100 %.
+        // Round before writing, so that the sum of thrust and difference stays within 100 %.
         let mut rounded = match self.clone() {
             Sentence::Command(command) => Sentence::Command(command.rounded()),
             Sentence::ControlState(state) => Sentence::ControlState(state.rounded()),
@@ -144,8 +144,8 @@ impl Sentence {
         Writer::line(rounded.layout())
     }
 
-    /// An empty sentence with this address: a proprietary one of the Surveyor, or a standard one
-    /// with a two-character talker.
+    /// An empty sentence with this address: one of the Surveyor's proprietary sentences, or a
+    /// standard sentence with a two-character talker.
     fn blank(address: &str) -> Option<Sentence> {
         Some(
             match (address, Talker::split(address).map_or("", |(_, kind)| kind)) {
@@ -188,7 +188,7 @@ impl Sentence {
     }
 }
 
-/// A body as a sentence: `$body*HH\r\n`.
+/// The sentence with this body: `$body*HH\r\n`.
 pub fn with_checksum(body: &str) -> String {
     format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The control mode that a boat's own controller receives or reports.
+/// A control mode that a boat's own controller receives or reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// `L`: thrusters idle.
@@ -37,7 +37,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// Every mode with its letter.
+    /// All modes with their letters.
     // From the command dictionary of a public driver for Surveyors; the manufacturer's interface
     // document is not public.
     const LETTERS: [(Mode, char); 14] = [
@@ -57,7 +57,7 @@ impl Mode {
         (Mode::BootLoader, '!'),
     ];
 
-    /// Every mode, in the order above.
+    /// All modes, in the order above.
     pub fn all() -> [Mode; 14] {
         Mode::LETTERS.map(|(mode, _)| mode)
     }
@@ -72,7 +72,7 @@ impl Mode {
         Mode::LETTERS[self as usize].1
     }
 
-    /// The mode for a letter, which is case-sensitive.
+    /// The mode with a letter, which is case-sensitive.
     pub fn from_letter(letter: char) -> Option<Mode> {
         Mode::LETTERS
             .iter()

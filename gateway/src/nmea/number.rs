@@ -4,7 +4,7 @@
 pub(super) fn number(text: &str) -> Option<f64> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
     let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));
-    // Parsed by hand, because `parse` also accepts "inf", "nan" and exponents, which no sentence
+    // `parse` is not enough: it also accepts "inf", "nan" and exponents, which no sentence
     // contains.
     let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let number = if digits(whole) && digits(decimals) {

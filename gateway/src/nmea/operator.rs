@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 /// The operator that commands a boat, by its number on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operator {
-    /// 1: the operator's station on shore.
+    /// 1: the operator station on shore.
     Primary,
     /// 2: the back seat, which is the gateway.
     Secondary,
-    /// 3: the operator's station by its second link.
+    /// 3: the operator station through its second link.
     PrimaryBackup,
     /// 5: a handheld remote control.
     Rc,
@@ -32,7 +32,7 @@ impl Operator {
         }
     }
 
-    /// The operator for a number.
+    /// The operator with a number.
     pub fn from_number(number: u8) -> Operator {
         match number {
             1 => Operator::Primary,

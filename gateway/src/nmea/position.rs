@@ -1,4 +1,4 @@
-//! A position as it appears in sentences: degrees and minutes run together, then a letter.
+//! A position as it appears in sentences: degrees and minutes without a separator, then a letter.
 
 use super::number::number;
 
@@ -38,12 +38,12 @@ impl Axis {
         Some([1.0, -1.0][place])
     }
 
-    /// Degrees from `ddmm.mmmm`. All digits before the point are required: without leading zeros
-    /// the position is ambiguous.
+    /// Degrees from `ddmm.mmmm`. All digits before the point are required, because without leading
+    /// zeros the position is ambiguous.
     pub(super) fn degrees(&self, text: &str) -> Option<f64> {
         let whole = text.split('.').next().unwrap_or_default();
-        // A missing leading zero would shift degrees into minutes: as a longitude, 8022.3 could
-        // mean 802 degrees or 80.
+        // Without a leading zero, degrees shift into minutes: the longitude 8022.3 could mean 802
+        // degrees or 80.
         if whole.len() != self.degree_digits + 2 || !whole.bytes().all(|byte| byte.is_ascii_digit())
         {
             return None;
@@ -55,8 +55,8 @@ impl Axis {
         (size_deg <= f64::from(self.degrees_max)).then_some(size_deg)
     }
 
-    /// `ddmm.mmmm,N` with this many decimal places of minutes. Splits an integer number of steps,
-    /// so that minutes carry into degrees.
+    /// `ddmm.mmmm,N` with this many decimal places of minutes. Splits a whole number of steps, so
+    /// that minutes carry into degrees.
     pub(super) fn printed(&self, angle_deg: f64, decimals: u32) -> Option<String> {
         if !angle_deg.is_finite() || angle_deg.abs() > f64::from(self.degrees_max) {
             return None;
@@ -68,8 +68,8 @@ impl Axis {
         let steps = (angle_deg.abs() * f64::from(60 * steps_per_minute)).round() as u32;
         let minutes = steps / steps_per_minute;
         let part = steps % steps_per_minute;
-        // A coordinate that rounds to zero is north or east: "0000.00000,S" would be a second text
-        // for the same position.
+        // A coordinate that rounds to zero is north or east: "0000.00000,S" would be a second
+        // spelling of the same position.
         let letter = self.letters[usize::from(angle_deg < 0.0 && steps > 0)];
         let degree_digits = self.degree_digits;
         let part_digits = decimals as usize;

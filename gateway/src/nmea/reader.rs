@@ -11,7 +11,7 @@ use super::talker::Talker;
 use primitives::LatLon;
 use std::str::FromStr;
 
-/// A sentence's address, and its data fields, counted from 1 as in manuals.
+/// A sentence's address, and its data fields, numbered from 1 as in manuals.
 pub(super) struct Reader<'a> {
     pub(super) address: &'a str,
     data: Vec<&'a str>,
@@ -52,8 +52,8 @@ impl<'a> Reader<'a> {
     fn read_field(&mut self, field: Field<'_>) -> Result<(), ParseError> {
         match field {
             Field::Address(_) => {}
-            // Any talker: the same sentence arrives as GP, GN or II, depending on the receiver's
-            // manufacturer.
+            // Accept any talker: the same sentence arrives as GP, GN or II, depending on the
+            // receiver's manufacturer.
             Field::Standard(talker, _) => {
                 *talker = Talker::split(self.address).map_or(*talker, |(talker, _)| talker)
             }
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
             Field::Letter(letter) => *letter = self.next().chars().next(),
             Field::Mode(mode) => *mode = self.mode()?,
             Field::Operator(operator) => *operator = self.whole()?.map(Operator::from_number),
-            // Receivers mark dead reckoning and manual input as valid, just like a fix.
+            // Receivers also mark dead reckoning and manual input as valid, like a fix.
             Field::ValidFix(valid, ahead) => {
                 *valid = self.valid()? && !matches!(self.peek(ahead), "E" | "M" | "S" | "N");
             }
@@ -101,25 +101,25 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The text of the next field without surrounding spaces; empty if the sentence is shorter.
+    /// The next field without surrounding spaces; empty if the sentence is shorter.
     fn next(&mut self) -> &'a str {
         self.at += 1;
         self.text(self.at)
     }
 
-    /// The text of the field `ahead` fields later, without consuming it.
+    /// The field `ahead` fields later, without consuming it.
     fn peek(&self, ahead: usize) -> &'a str {
         self.text(self.at + ahead)
     }
 
-    // Real boats send a space for a field that they do not have.
+    // Real boats send a space for a field that they do not support.
     fn text(&self, at: usize) -> &'a str {
         self.data
             .get(at - 1)
             .map_or("", |text| text.trim_matches(' '))
     }
 
-    /// The next field parsed with `parse`; `None` if it is empty.
+    /// The next field, parsed with `parse`; `None` if it is empty.
     fn parsed<T>(
         &mut self,
         parse: fn(&str) -> Option<T>,
@@ -138,8 +138,8 @@ impl<'a> Reader<'a> {
 
     /// The whole number in the next field, if any.
     fn whole<T: FromStr>(&mut self) -> Result<Option<T>, ParseError> {
-        // The library's parser accepts a plus sign, which never occurs in a sentence and means that
-        // fields have shifted.
+        // The library's parser accepts a plus sign, which in a sentence means that fields have
+        // shifted.
         let whole = |text: &str| {
             text.parse()
                 .ok()
@@ -157,7 +157,7 @@ impl<'a> Reader<'a> {
         mode.ok_or_else(|| self.wrong("the letter of a control mode"))
     }
 
-    /// The position in the next four fields, if any; an incomplete one is an error.
+    /// The position in the next four fields, if any; an incomplete position is an error.
     fn position(&mut self) -> Result<Option<LatLon>, ParseError> {
         if self.peek(1).is_empty() && self.peek(3).is_empty() {
             self.at += 4;
@@ -197,14 +197,14 @@ impl<'a> Reader<'a> {
     /// invalid.
     fn valid(&mut self) -> Result<bool, ParseError> {
         match self.next() {
-            // Some receivers put D (differential) here.
+            // Some receivers send D (differential) here.
             "A" | "D" => Ok(true),
             "V" | "" => Ok(false),
             _ => Err(self.wrong("A, D, V or an empty field")),
         }
     }
 
-    /// Rejects any text except the unit `letter`: another unit means another layout.
+    /// Rejects a field other than the unit `letter`: a different unit means a different layout.
     fn unit(&mut self, letter: &'static str) -> Result<(), ParseError> {
         let text = self.next();
         if text.is_empty() || text == letter {
@@ -224,12 +224,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The error that the last field read is not what was `expected`.
+    /// The error that the last field read does not match `expected`.
     fn wrong(&self, expected: &'static str) -> ParseError {
         self.wrong_at(self.at, expected)
     }
 
-    /// The same for another field.
+    /// The same for the given field.
     fn wrong_at(&self, field: usize, expected: &'static str) -> ParseError {
         let found = self
             .data

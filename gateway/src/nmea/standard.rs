@@ -28,8 +28,7 @@ pub struct Gga {
 
 impl Gga {
     /// 14 fields. The last one, the reference station, must be empty: the fleet's driver counts
-    /// fields after dropping one trailing empty field, and with a station it reads no position at
-    /// all.
+    /// fields after dropping one trailing empty field, and reads no position if there is a station.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Standard(&mut self.talker, "GGA"),
@@ -59,7 +58,7 @@ pub struct Rmc {
     pub talker: Talker,
     /// Time of the fix.
     pub time: Option<TimeOfDay>,
-    /// Whether the receiver marks it valid.
+    /// Whether the receiver marks the fix as valid.
     pub valid: bool,
     /// Position of the antenna.
     pub at: Option<LatLon>,
@@ -72,7 +71,7 @@ pub struct Rmc {
 }
 
 impl Rmc {
-    /// 12 fields: no magnetic variation, and a mode of autonomous or not valid.
+    /// 12 fields: without magnetic variation, and with a mode of autonomous or not valid.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let mode = fix_mode(self.valid);
         let fields = vec![
@@ -202,7 +201,7 @@ pub struct Zda {
 }
 
 impl Zda {
-    /// With UTC as the local zone.
+    /// The local time zone is UTC.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Standard(&mut self.talker, "ZDA"),

@@ -11,9 +11,9 @@ use primitives::LatLon;
 pub struct Command {
     /// The commanded mode.
     pub mode: Mode,
-    /// Compass heading, degrees; in [`Mode::FileDownload`] the number of lines that follow.
+    /// Compass heading, degrees; in [`Mode::FileDownload`] the number of following lines.
     pub heading_deg: Option<f64>,
-    /// Thrust in percent of full thrust, ahead positive; in [`Mode::Speed`] the speed in knots.
+    /// Thrust in percent of full thrust, positive ahead; in [`Mode::Speed`] the speed in knots.
     pub thrust: Option<f64>,
     /// Half of port thrust minus starboard thrust, percent: positive turns to starboard.
     pub difference: Option<f64>,
@@ -23,8 +23,8 @@ pub struct Command {
 
 impl Command {
     /// Accepts four or more fields, because some real drivers send four and some six. In
-    /// [`Mode::Thruster`] the heading is also a whole number: some boats read nothing else, and
-    /// keep the previous value.
+    /// [`Mode::Thruster`] the heading is also a whole number: some boats ignore any other number
+    /// and keep the previous value.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         // In a download without following lines, the three unused fields are zero.
         let zeros = |number: &Option<f64>| Format {
@@ -42,8 +42,8 @@ impl Command {
                 zeros(&self.thrust),
                 zeros(&self.difference),
             ),
-            // Whole numbers in mode T: a stand-in for the boat reads each field as an integer, and
-            // keeps the previous difference if it has decimal places.
+            // Mode T uses whole numbers: a stand-in for the boat reads integers, and keeps the
+            // previous difference if the new one has decimal places.
             Mode::Thruster => (
                 Format {
                     compass: true,
@@ -90,10 +90,10 @@ impl Command {
     }
 }
 
-/// Rounds thrust and difference to whole percent, halves away from zero; a speed in knots is
-/// unchanged.
+/// Rounds thrust and difference to whole percentages, halves away from zero; leaves a speed in
+/// knots unchanged.
 ///
-/// A thruster receives their sum, so where rounding would exceed 100 the boat turns a little less.
+/// A thruster receives their sum, so if rounding would exceed 100 the boat turns a little less.
 fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
     let sum =
         |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
@@ -115,7 +115,7 @@ fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<
     }
 }
 
-/// `PSEAA`, the attitude: pitch, roll and heave, and the compass.
+/// `PSEAA`, the attitude: pitch, roll, heave and compass heading.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attitude {
     /// Pitch, degrees. The positive direction is not published.
@@ -124,11 +124,11 @@ pub struct Attitude {
     pub roll_deg: Option<f64>,
     /// Compass heading: magnetic, degrees.
     pub heading_deg: Option<f64>,
-    /// Heave, m. Read but never written: boats leave it blank, and readers expect that.
+    /// Heave, m. Read but never written: boats leave the field blank, and readers expect this.
     pub heave_m: Option<f64>,
     /// Temperature of the electronics box, degrees Celsius.
     pub box_c: Option<f64>,
-    /// Acceleration ahead, in units of gravity.
+    /// Forward acceleration, in units of gravity.
     pub accel_ahead_g: Option<f64>,
     /// Acceleration to starboard.
     pub accel_starboard_g: Option<f64>,
@@ -151,8 +151,8 @@ impl Attitude {
                     ..TENTHS
                 },
             ),
-            // Written blank: a public client treats a field that contains only a space as a broken
-            // sentence, and boats omit heave.
+            // Write it blank: boats omit heave, and a public client treats a field with only a
+            // space as a broken sentence.
             Field::ReadOnly(&mut self.heave_m),
             Field::Number(&mut self.box_c, TENTHS),
             Field::Number(&mut self.accel_ahead_g, HUNDREDTHS),
@@ -243,7 +243,7 @@ pub struct ControlState {
     pub thrust: Option<f64>,
     /// The commanded thrust difference, percent.
     pub difference: Option<f64>,
-    /// The last switch that it received, else empty.
+    /// The last switch received, else empty.
     pub words: String,
     /// How the command arrived: one of the letters T, F, R and N.
     pub transmission: Option<char>,
@@ -306,7 +306,7 @@ impl BoatError {
     }
 }
 
-/// `PSEAR`, the settings of a mission: the throttle between its waypoints. The other fields are
+/// `PSEAR`, the settings of a mission: the throttle between its waypoints. All other fields are
 /// constant in every known sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MissionSettings {
@@ -340,13 +340,12 @@ impl MissionSettings {
     }
 }
 
-/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimal places of minutes give a
-/// resolution of 0.1 m.
+/// `OIWPL`, a waypoint of a mission being uploaded. Four decimal places of minutes resolve 0.1 m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waypoint {
     /// The waypoint's position.
     pub at: LatLon,
-    /// Its number; 0 is the emergency recovery point.
+    /// The waypoint's number; 0 is the emergency recovery point.
     pub index: u16,
 }
 
@@ -378,7 +377,7 @@ mod tests {
             (99.5, -0.5, (100.0, 0.0)),
             (0.5, 99.5, (1.0, 99.0)),
             (20.5, -10.5, (21.0, -11.0)),
-            // A command that was already out of range is left for others to reject.
+            // Leave a command that was already out of range for others to reject.
             (80.0, 40.0, (80.0, 40.0)),
             (101.0, 0.0, (101.0, 0.0)),
         ] {

@@ -1,7 +1,6 @@
 //! The talker of a standard sentence.
 
-/// The talker: two characters, A to Z and 0 to 9, that identify the kind of device that sends a
-/// sentence.
+/// The talker: two characters, A to Z and 0 to 9, that identify the sender's type of device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Talker(pub(super) [u8; 2]);
 
@@ -11,8 +10,8 @@ impl Talker {
     /// A magnetic compass.
     pub const HC: Talker = Talker(*b"HC");
 
-    /// Talker and kind of a five-character address. A proprietary sentence begins with `P` and has
-    /// no talker.
+    /// Talker and sentence type of a five-character address. A proprietary sentence begins with `P`
+    /// and has no talker.
     pub(super) fn split(address: &str) -> Option<(Talker, &str)> {
         let (talker, kind) = address.split_at_checked(2)?;
         let characters: [u8; 2] = talker.as_bytes().try_into().ok()?;

@@ -1,4 +1,4 @@
-//! Writes a sentence by its layout: its fields one by one, then the checksum and the line's end.
+//! Writes a sentence according to its layout: the fields one by one, then checksum and line end.
 
 use super::date_time::{Date, TimeOfDay};
 use super::layout::{Field, Format, Layout, TENTHS};
@@ -10,9 +10,9 @@ use std::ops::Range;
 /// `$`, `*`, two digits, CR and LF.
 const FRAME: usize = 6;
 
-/// A sentence that is being written.
+/// A sentence being written.
 ///
-/// Numbers and free texts are optional: if the line would exceed [`EMITTED_MAX`], the longest
+/// Numbers and free-text fields are optional: if the line would exceed [`EMITTED_MAX`], the longest
 /// optional fields are left empty. Every reader understands an empty field, whereas a truncated one
 /// would be a different number.
 pub(super) struct Writer {
@@ -21,7 +21,7 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// The sentence of this layout.
+    /// The sentence with this layout.
     pub(super) fn line(layout: Layout<'_>) -> String {
         let mut line = Writer {
             body: String::with_capacity(EMITTED_MAX),
@@ -55,7 +55,7 @@ impl Writer {
             Field::Required(number, format, _) => self.number(Some(*number), format),
             Field::ReadOnly(_) => self.fixed(""),
             Field::East(number) => {
-                // The sign is a separate letter; a missing number has neither.
+                // The sign is a separate letter; both are empty for a missing number.
                 let number = number.filter(|number| number.is_finite());
                 self.number(number.map(f64::abs), TENTHS);
                 self.spare(number.map_or("", |number| if number < 0.0 { "W" } else { "E" }));
@@ -81,9 +81,9 @@ impl Writer {
         }
     }
 
-    /// A position in four fields, empty for a missing position or one off the globe.
+    /// A position in four fields, which are empty if it is missing or off the globe.
     fn position(&mut self, at: Option<LatLon>, decimals: u32) {
-        // Both or neither: half a position would be read as one on the equator or the prime
+        // Write both or neither: half a position would be read as one on the equator or the prime
         // meridian.
         let texts = at.and_then(|at| {
             Some((
@@ -106,7 +106,7 @@ impl Writer {
         }
     }
 
-    /// A field that is never omitted; the caller ensures that it is short.
+    /// Writes a field that is never omitted; the caller ensures that it is short.
     fn fixed(&mut self, text: &str) {
         self.body.push(',');
         self.body.push_str(text);
@@ -116,7 +116,7 @@ impl Writer {
         self.spare(&format.text(number));
     }
 
-    /// External text: empty if it contains a character with a meaning for the framing.
+    /// Writes an external string: empty if it contains a character with a meaning for the framing.
     fn text(&mut self, text: &str) {
         let plain = |byte: u8| matches!(byte, b' '..=b'~') && !matches!(byte, b',' | b'*' | b'$');
         self.spare(if text.bytes().all(plain) { text } else { "" });
@@ -131,7 +131,7 @@ impl Writer {
         }
     }
 
-    /// Empties the longest optional field, the last of equal ones.
+    /// Empties the longest optional field; of several, the last.
     fn empty_the_longest(&mut self) {
         let longest = self
             .spare

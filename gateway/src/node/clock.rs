@@ -1,14 +1,14 @@
-//! The gateway's monotonic clock, which includes time that the machine is suspended. In a game
+//! The gateway's monotonic clock, which includes time when the machine is suspended. In a game
 //! faster than real time it runs at the game's pace.
 
 use bus::clock;
 use primitives::SimTime;
 use std::time::{Duration, Instant};
 
-/// Minimum time that counts as a suspension: the two clocks are not read simultaneously.
+/// Minimum time that counts as a suspension, since the two clocks are not read simultaneously.
 const SUSPENSION_MIN: Duration = Duration::from_millis(50);
 
-/// A moment, and the total suspended time by then.
+/// A moment, and the total suspended time until then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
     pub(super) at: Instant,
@@ -23,10 +23,11 @@ impl Moment {
         }
     }
 
-    /// How long before `now` it was, and how long of that the machine was suspended, if it was.
+    /// The time from this moment to `now`, and how long the machine was suspended during it, if it
+    /// was.
     pub(super) fn gap(self, now: Moment) -> (Duration, Option<Duration>) {
-        // Linux's monotonic clock stops while the machine sleeps. The time asleep is added, so that
-        // old data counts as old after waking.
+        // Linux's monotonic clock stops during sleep. The time asleep is added, so that old data
+        // counts as old after waking.
         let suspended = now.suspended.saturating_sub(self.suspended);
         let awake = now.at.saturating_duration_since(self.at);
         (
@@ -40,7 +41,7 @@ impl Moment {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
     start: Moment,
-    /// Its time at `start`.
+    /// The clock's time at `start`.
     base: SimTime,
     factor: f64,
 }
@@ -54,7 +55,7 @@ impl Clock {
         }
     }
 
-    /// Runs at this pace of a game from now on.
+    /// From now on, runs at this multiple of real time, the game's pace.
     pub(super) fn set_pace(&mut self, factor: f64) {
         let now = Moment::now();
         *self = Clock {
@@ -68,7 +69,7 @@ impl Clock {
         self.time_at(Moment::now())
     }
 
-    /// The gateway's time at a moment of real time since the machine was last suspended.
+    /// The gateway's time at a real time since the last suspension of the machine.
     pub(super) fn at(&self, at: Instant) -> SimTime {
         self.time_at(Moment {
             at,

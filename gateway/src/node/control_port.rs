@@ -1,9 +1,9 @@
-//! The control port of a gateway: operators' requests over TCP, with or without a game. Stops also
-//! arrive as datagrams.
+//! The control port of a gateway: operators' requests over TCP, with or without a game. Datagrams
+//! can carry stops, too.
 //!
 //! Requests and replies are one line each, as on the network (`bus::token`). Anyone may query the
-//! status and stop the boat; everything else requires proof of the game's token. Nothing delays a
-//! stop: no silent peer, no garbage, no number of connections.
+//! status and stop the boat; everything else requires proof of the game's token. Nothing can delay
+//! a stop: neither silent peers nor garbage nor many connections.
 
 use super::error::NodeError;
 use super::loop_input::{LoopInput, Stop};
@@ -24,18 +24,18 @@ use std::time::Duration;
 
 /// Maximum number of connections.
 const CONNECTIONS_MAX: usize = 128;
-/// A connection that is idle for this long, or does not read, is closed.
+/// Time after which a connection that is idle or does not read is closed.
 const IDLE_MAX: Duration = Duration::from_secs(30);
 const WRITE_MAX: Duration = Duration::from_secs(2);
 /// Maximum bytes of a request: a mission has a few hundred waypoints.
 const REQUEST_MAX: u64 = 64 * 1024;
-/// How long the gateway loop may take to reply.
+/// Maximum time for the gateway loop to reply.
 const REPLY_MAX: Duration = Duration::from_secs(2);
 
-/// How long the loop may take to provide the boat's state for the reply to a datagram; the next
+/// Maximum time for the loop to provide the boat's state for the reply to a datagram. The next
 /// datagram waits meanwhile.
 const STATE_MAX: Duration = Duration::from_millis(50);
-/// How often another port is tried if any port will do and its number is free only for TCP.
+/// Number of attempts to find a port that is free for both TCP and UDP, if any port will do.
 const ATTEMPTS: usize = 16;
 
 /// A port that stays open until dropped.
@@ -51,7 +51,7 @@ struct Server {
     vehicle: String,
     token: CurrentToken,
     input: LoopInput,
-    /// Whether the gateway loop runs.
+    /// Whether the gateway loop is running.
     is_running: AtomicBool,
 }
 
@@ -98,29 +98,29 @@ impl ControlPort {
         })
     }
 
-    /// The token that it requires.
+    /// The required token.
     pub(super) fn token(&self) -> &CurrentToken {
         &self.server.token
     }
 
-    /// The gateway loop answers from now on.
+    /// Records that the gateway loop answers from now on.
     pub(super) fn begin(&self) {
         self.server.is_running.store(true, Ordering::SeqCst);
     }
 }
 
 impl Server {
-    /// Answers requests, line by line, until one is garbage or too long, or the peer is silent.
+    /// Answers requests, line by line, until a line is garbage or too long, or the peer is silent.
     fn serve(&self, slot: &Slot, mut stream: &TcpStream) -> io::Result<()> {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(IDLE_MAX))?;
         stream.set_write_timeout(Some(WRITE_MAX))?;
-        // A challenge belongs to this connection: those of others cannot displace it.
+        // A challenge belongs to one connection, so those of others cannot displace it.
         let mut guard = Guard::new(self.token.clone());
         let mut reader = BufReader::new(stream);
         loop {
             let mut line = Vec::new();
-            // A line without an end must not fill the memory.
+            // A line without an end must not exhaust the memory.
             reader
                 .by_ref()
                 .take(REQUEST_MAX)
@@ -128,8 +128,7 @@ impl Server {
             if line.pop() != Some(b'\n') {
                 return Ok(());
             }
-            // Read before the check, so that a request checked without a token never reaches the
-            // loop.
+            // Read before the check, so that no request checked without a token reaches the loop.
             let is_running = self.is_running.load(Ordering::SeqCst);
             let (mut answer, is_garbage) =
                 match guard.check(GATEWAY_PORT_KEY, &line, GatewayCommand::needs_token) {
@@ -145,8 +144,8 @@ impl Server {
                 };
             answer.push(b'\n');
             stream.write_all(&answer)?;
-            // A browser that a web page causes to post here speaks HTTP: its first line is garbage,
-            // and the rest is not read.
+            // If a web page makes a browser post to this port, it sends HTTP: the first line is
+            // garbage, and the rest is not read.
             if is_garbage {
                 return Ok(());
             }
@@ -163,11 +162,10 @@ impl Server {
                 self.vehicle
             ));
         }
-        // The loop reads stops before everything else; the query only returns the boat's state
-        // afterwards.
+        // The loop reads stops before everything else; the query only returns the resulting state.
         let ask = match self.stop_in(&command) {
             Some(stop) => {
-                // Before the reply is even prepared, so that nothing can delay it.
+                // Before preparing the reply, so that nothing can delay the stop.
                 self.input.stop(stop);
                 GatewayCommand::boat(&self.vehicle, OperatorCommand::Status)
             }
@@ -195,8 +193,8 @@ impl Server {
         }
     }
 
-    /// Executes a stop, and replies with the boat's state afterwards. Before the loop runs there is
-    /// no state to report.
+    /// Executes a stop, and replies with the resulting state of the boat. Before the loop runs,
+    /// there is no state to report.
     fn serve_datagram(&self, bytes: &[u8]) -> Option<Vec<u8>> {
         let request = StopRequest::decode(bytes)?;
         let count = match self.stop_in(&request.command) {
@@ -204,7 +202,7 @@ impl Server {
             None if request.command.is_status() => 0,
             None => return None,
         };
-        // Obeyed anyway: the loop reads the flag when it starts.
+        // Obey anyway: the loop reads the flag when it starts.
         if !self.is_running.load(Ordering::SeqCst) {
             return None;
         }
@@ -226,7 +224,7 @@ impl Server {
         }
     }
 
-    /// The status while the loop is not running.
+    /// The status before the loop runs.
     fn status_before(&self) -> GatewayStatus {
         let is_stopped = self.input.has_e_stop();
         let state = if is_stopped {
@@ -334,7 +332,7 @@ mod tests {
             game: None,
             command,
         };
-        // Before its loop runs it obeys, but has nothing to report.
+        // Before its loop runs, the gateway obeys but has nothing to report.
         socket
             .send(&request(boat(OperatorCommand::EStop)).encode())
             .expect("it is sent");
@@ -371,7 +369,7 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains(&token.hex()));
-        // A request without room for an answer gets none.
+        // A request without space for a reply gets none.
         socket
             .send(br#"{"body":{"fleet":"e_stop"}}"#)
             .expect("it is sent");

@@ -1,5 +1,5 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives
-//! with the boat's own protocol.
+//! through the boat's own protocol.
 
 use super::POLL;
 use super::error::NodeError;
@@ -26,17 +26,17 @@ use std::time::Duration;
 
 /// The settings of an emulated boat.
 pub struct EmulatorSettings {
-    /// The game to join. `None`: the only one available.
+    /// The game to join; `None` means the only one available.
     pub game: Option<GameName>,
-    /// Where the sim is.
+    /// The location of the sim.
     pub place: Place,
     /// The boat's name in the game.
     pub vehicle: String,
-    /// Its front seat.
+    /// The boat's front seat.
     pub front_seat: FrontSeatSettings,
     /// How long to look for the game.
     pub wait: Duration,
-    /// After this long without a picture, the sim is treated as lost.
+    /// Time without a picture after which the sim is treated as lost.
     pub silence: Duration,
     /// Set by the caller to end the emulator.
     pub stop: Arc<AtomicBool>,
@@ -44,45 +44,45 @@ pub struct EmulatorSettings {
 
 /// The settings of an emulated boat's front seat.
 pub enum FrontSeatSettings {
-    /// A Surveyor's.
+    /// Imitates a Surveyor's.
     Surveyor {
-        /// Where the back seat connects.
+        /// The address for the back seat.
         listen: LinkAddress,
-        /// Where the primary operator connects, if used.
+        /// The address for the primary operator, if used.
         primary: Option<LinkAddress>,
         /// Declination, east positive, rad; `None` uses the World Magnetic Model.
         declination_rad: Option<f64>,
-        /// Without a command for this long the boat goes to standby, s; `None` means never.
+        /// Time without a command after which the boat goes to standby, s; `None` means never.
         watchdog_s: Option<f64>,
-        /// Whether a set-point that is not a whole number leaves the previous one in force.
+        /// Whether a non-integer set-point leaves the previous one in force.
         integers: bool,
         /// Sentences in addition to a Surveyor's.
         extra: Vec<Extra>,
-        /// Initial charge of its battery, as a fraction; `None` is full and never drains.
+        /// Initial charge of the battery, as a fraction; `None` means full, without drain.
         charge: Option<f64>,
     },
     /// Imitates an ArduPilot boat's.
     ArduPilot {
-        /// Where the back seat connects.
+        /// The address for the back seat.
         listen: LinkAddress,
         /// A ground station that waits for the boat, if used.
         ground_station: Option<LinkAddress>,
-        /// Initial charge of its battery, as a fraction; `None` is full and never drains.
+        /// Initial charge of the battery, as a fraction; `None` means full, without drain.
         charge: Option<f64>,
     },
     /// ArduPilot's own firmware, as *software in the loop*.
     Sitl {
-        /// Where the firmware asks for its boat's motion, by UDP.
+        /// Where the firmware requests its boat's motion, by UDP.
         listen: SocketAddr,
-        /// Its outputs for the thrusters.
+        /// The servo outputs for the thrusters.
         servos: Servos,
     },
 }
 
-/// Maximum bytes of commands that may wait: more than a back seat sends in a minute.
+/// Maximum bytes of waiting commands: more than a back seat sends in a minute.
 const UNREAD_MAX: usize = 256 * 1024;
 
-/// Maximum frames that may wait: more than a game publishes while one is read.
+/// Maximum number of waiting frames: more than a game publishes while one is read.
 const FRAMES_MAX: usize = 64;
 
 /// Input from the links and the sim since the last poll.
@@ -99,8 +99,8 @@ struct Incoming {
 /// Emulates a boat until the game is over, or until it is stopped.
 ///
 /// # Errors
-/// [`NodeError`] if there is no such game or boat, if it has another agent, or if the network or a
-/// link cannot work.
+/// [`NodeError`] if there is no such game or boat, if the boat already has an agent, or if the
+/// network or a link cannot work.
 pub fn emulate(
     settings: &EmulatorSettings,
     notify: &mut dyn FnMut(NodeEvent<'_>),
@@ -110,7 +110,7 @@ pub fn emulate(
     let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
     let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
     // A back seat runs in real time.
-    // Rejected in lockstep: its clock stops between decisions.
+    // Lockstep is rejected: its clock stops between decisions.
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
@@ -119,7 +119,7 @@ pub fn emulate(
     let _subscription = bus.subscribe(
         topic::picture(&game, scenario, scenario.team_of(vehicle)),
         move |bytes| {
-            // Only the newest: a boat does not act on an outdated picture.
+            // Keep only the newest: a boat does not act on an outdated picture.
             pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
         },
     )?;
@@ -162,10 +162,11 @@ pub fn emulate(
     result
 }
 
-/// The front seat and its links: to the back seat, and to the primary operator or ground station.
+/// The front seat and its links: to the back seat, and to the primary operator or the ground
+/// station.
 type Opened = (Box<dyn FrontSeat>, [Option<Link>; 2]);
 
-/// Opens the front seat of a boat on a field with this datum.
+/// Opens the front seat of a boat on a field with the given datum.
 fn open_front_seat(
     settings: &FrontSeatSettings,
     datum: LatLon,
@@ -304,7 +305,7 @@ struct EmulatorNode {
     sim: SimWatch,
     /// Game time.
     now: SimTime,
-    /// To the back seat, and to the primary operator.
+    /// Links to the back seat and to the primary operator.
     links: [Option<Link>; 2],
     orders: Publisher,
     operator: Option<Operator>,
@@ -380,7 +381,7 @@ impl EmulatorNode {
         &mut *boat.front_seat
     }
 
-    /// Reports who commands the boat, if that changed.
+    /// Reports who commands the boat, if this has changed.
     fn report_operator(&mut self, notify: &mut dyn FnMut(NodeEvent<'_>)) {
         let Some(operator) = self.front_seat().operator() else {
             return;
@@ -399,7 +400,7 @@ impl EmulatorNode {
 
     /// Answers a picture with the boat's order, and sends telemetry.
     fn answer(&mut self, picture: &Picture) -> Result<(), NodeError> {
-        // The sim repeats pictures whose answers were lost. The order is repeated, but not the
+        // The sim repeats pictures whose answers were lost: repeat the order, but not the
         // telemetry.
         let is_new = self.runner.decided() != Some(picture.stamp.seq);
         if is_new {

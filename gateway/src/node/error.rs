@@ -1,4 +1,4 @@
-//! Why a gateway cannot run.
+//! Errors that prevent a gateway from running.
 
 use crate::declination::DeclinationError;
 use crate::geofence::GeofenceError;
@@ -10,7 +10,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Why a gateway cannot run.
+/// An error that prevents a gateway from running.
 #[derive(Debug, Error)]
 pub enum NodeError {
     /// The network failed.
@@ -61,10 +61,10 @@ pub enum NodeError {
     /// The game and the gateway do not match.
     #[error("{0}")]
     Refused(String),
-    /// The sim has died or is silent, so the emulated boat is lost too.
+    /// The sim has died or is silent, so the emulated boat is also lost.
     #[error("lost the sim: no picture for {0:.1?}")]
     SimGone(Duration),
-    /// Another sim serves a game of the same name, and does not know us.
+    /// A different sim serves a game with the same name, and does not know us.
     #[error("lost the sim, and another one now serves the game: join again")]
     SimReplaced,
 }

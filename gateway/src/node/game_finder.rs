@@ -24,7 +24,7 @@ pub(super) struct FoundGame {
     pub(super) site: Site,
 }
 
-/// Starts the search. Its result goes to the loop.
+/// Starts the search. Its result goes to the gateway loop.
 ///
 /// # Errors
 /// If the system cannot start a thread.
@@ -46,8 +46,8 @@ fn find(settings: &Settings, tell: &mut dyn FnMut(&str)) -> Result<FoundGame, No
     let field = info.scenario.field.clone();
     let area = GeofenceArea::new(&field, &plan.gateway.geofence);
     let file = plan.gateway.name.clone();
-    // Before the boat joins: otherwise a geofence that excludes the start would be noticed with
-    // the boat on the water.
+    // Before the boat joins: otherwise a geofence that excludes the start position would only be
+    // noticed with the boat on the water.
     area.check(&info.scenario, vehicle)
         .map_err(|source| NodeError::Geofence { file, source })?;
     let declination_rad = declination_rad(plan.gateway.declination_rad, field.plan.datum)?;
@@ -62,8 +62,8 @@ fn find(settings: &Settings, tell: &mut dyn FnMut(&str)) -> Result<FoundGame, No
     // The thread that keeps the boat joined repeats the request and gets the same boat.
     let names = [plan.vehicle.clone()];
     let all = (&game, &info.scenario);
-    // Joining once here reports a wrong token or a taken boat while the operator is still
-    // watching.
+    // Joining once during the search reports a wrong token or a boat already taken while the
+    // operator is still watching.
     search.until(tell, || {
         game_search::join(&bus, place, all, Role::Gateway, &names)
     })?;

@@ -1,5 +1,5 @@
-//! The conditions of a boat's participation in a game: its source, the pace, and the declination at
-//! the field.
+//! The conditions under which a boat takes part in a game: its source, the pace, and the
+//! declination at the field.
 
 use super::error::NodeError;
 use crate::declination::declination_deg;
@@ -10,7 +10,7 @@ use primitives::frame::LatLon;
 use recording::utc;
 use scenario::Source;
 
-/// The vehicle of this name, which must be a real boat in this game.
+/// The vehicle with this name, which must be a real boat in this game.
 pub(super) fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {
     let vehicle = info.scenario.vehicle_named(name)?;
     if info.scenario.vehicles[vehicle.index()].source == Source::External {
@@ -39,7 +39,7 @@ pub(super) fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeErr
     }
 }
 
-/// The declination as configured, otherwise at the field today; east positive, rad.
+/// The configured declination, or else that of the field today; east positive, rad.
 pub(super) fn declination_rad(set_rad: Option<f64>, at: LatLon) -> Result<f64, NodeError> {
     let today_rad = || Ok(declination_deg(at, date_and_time(utc::now_ns()).0)?.to_radians());
     set_rad.map_or_else(today_rad, Ok)

@@ -1,5 +1,5 @@
-//! The gateway loop: passes inputs from the boat, the sim and operators to the core, and its
-//! outputs on.
+//! The gateway loop: passes inputs from the boat, the sim and operators to the core, and forwards
+//! the core's outputs.
 
 use super::clock::{Clock, Moment};
 use super::control_port::ControlPort;
@@ -28,25 +28,24 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often the status is published, and shown.
+/// Interval between reports of the status.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
 /// Maximum time for the shutdown message.
 const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
-/// How long the loop waits after an error for a boat that has not been reached yet, to send it
-/// standby.
+/// Maximum time for which the loop waits after an error to reach the boat and send it standby.
 const REACH_MAX: Duration = Duration::from_secs(2);
 const NOT_REACHED: &str = "not connected yet";
-/// Maximum number of order sentences whose completion is awaited.
+/// Maximum number of order sentences awaiting completion.
 const WRITING_MAX: usize = 64;
-/// Data that has waited longer for the loop is too old: the loop was suspended, or had no
-/// processor.
+/// Maximum time that data may have waited for the loop. Data that waited longer is outdated: the
+/// loop was suspended or had no processor.
 const WAITED_MAX: Duration = Duration::from_millis(500);
-/// The refusal of a request that a disarm has overtaken.
+/// The reply to a request that a disarm has overtaken.
 const DISARMED: &str = "the boat has been disarmed since: repeat the request";
-/// A message that recurs within this time is not logged again.
+/// Time within which a recurring message is not logged again.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
-/// The loop of a gateway, with everything it drives.
+/// The loop of a gateway, with everything that it drives.
 pub(super) struct GatewayLoop<'a> {
     pub(super) bridge: Bridge,
     pub(super) link: Box<dyn BoatLink>,
@@ -65,7 +64,7 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) port: Option<&'a ControlPort>,
 }
 
-/// The game that the gateway is in.
+/// The game that the gateway has joined.
 pub(super) struct InGame {
     bus: Bus,
     pub(super) nav: Publisher,
@@ -87,7 +86,7 @@ pub(super) struct Counters {
     tag: u64,
     /// Order sentences being sent: tag, and arrival time of the order.
     writing: VecDeque<(u64, Instant)>,
-    /// Arrival time of the order that has not been sent yet.
+    /// Arrival time of the order to be sent.
     order_came: Option<Instant>,
     pub(super) sentence_to_topic: Latency,
     pub(super) order_to_sentence: Latency,
@@ -129,19 +128,19 @@ impl GatewayLoop<'_> {
             let stop_count = self.input.stop_count();
             self.take_requests()?;
             // With the count from before the stops were taken: a published state covers all stops
-            // up to that count, and no later ones.
+            // up to this count, and no later ones.
             self.input
                 .show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
-            // No longer than a heartbeat: the guard cannot distinguish a loop that is waiting for a
-            // boat from one that hangs.
+            // Wait no longer than a heartbeat: the guard cannot distinguish a loop that is waiting
+            // for a boat from one that hangs.
             let call = self.input.calls.take(if self.guarded.is_some() {
                 wait.min(HEARTBEAT)
             } else {
                 wait
             });
-            // The suspension is noted before the input that arrived meanwhile.
+            // Note the suspension before input that arrived meanwhile.
             beat_at = self.beat(beat_at)?;
             match call {
                 Some(call) => self.handle_call(call)?,
@@ -158,21 +157,20 @@ impl GatewayLoop<'_> {
         Ok(())
     }
 
-    /// If the first attempt is still in progress, waits until the boat is reached and has received
-    /// standby.
+    /// If the first connection attempt is still in progress, waits until the boat has been reached
+    /// and has received standby.
     pub(super) fn await_boat(&mut self) {
         let start = clock::now();
         while self.counters.link == NOT_REACHED && clock::since(start) < REACH_MAX {
             if let Some(Call::Link(event)) = self.input.calls.take(HEARTBEAT) {
-                // There already is an error.
+                // There is already an error.
                 drop(self.take_link(event));
             }
         }
     }
 
-    /// Shows the guard that the loop is running, and reports to the core a pause long enough for
-    /// the guard to have stopped the boat. Input from before a suspension of the machine is
-    /// discarded.
+    /// Sends the guard a heartbeat, and reports to the core any pause long enough for the guard to
+    /// have stopped the boat. Discards input from before a suspension of the machine.
     fn beat(&mut self, last: Moment) -> Result<Moment, NodeError> {
         let now = Moment::now();
         let (gap, suspended) = last.gap(now);
@@ -184,7 +182,7 @@ impl GatewayLoop<'_> {
             ));
         }
         if let Some(guarded) = &self.guarded {
-            // The stop message may change: with the operator in control, or during an upload.
+            // The stop message may change with the operator in control, or during an upload.
             guarded.stop_with(&self.bridge.guard_message());
         }
         if self.guarded.as_ref().is_some_and(|guarded| !guarded.beat()) {
@@ -205,8 +203,8 @@ impl GatewayLoop<'_> {
         self.log(&Event::Warning(text.to_owned()), text);
     }
 
-    /// Handles stops before everything else, then at most one request from the control port and one
-    /// from the hub.
+    /// Handles all stops first, then at most one request from the control port and one from the
+    /// hub.
     fn take_requests(&mut self) -> Result<(), NodeError> {
         if self.input.take_stop(Stop::EStop(Scope::Fleet)) {
             self.step(Input::Fleet(FleetCommand::EStop), None)?;
@@ -226,7 +224,7 @@ impl GatewayLoop<'_> {
                 GatewayCommand::Boat { command, .. } => self.execute(command)?,
                 GatewayCommand::Fleet(command) => self.step_core(Input::Fleet(command), None)?,
             };
-            // The requester may be gone.
+            // The requester may have gone.
             drop(reply.try_send(OperatorReply {
                 refused,
                 status: self.full_status(),
@@ -238,12 +236,12 @@ impl GatewayLoop<'_> {
         }
     }
 
-    /// Refuses requests from before a disarm that has overtaken them: they must not arm the boat
-    /// again.
+    /// Refuses requests from before a disarm that has overtaken them, since they must not rearm the
+    /// boat.
     fn refuse_earlier(&mut self) -> Result<(), NodeError> {
         while let Some((command, reply)) = self.input.port_requests.take_now() {
             let refused = command.needs_token().then(|| DISARMED.to_owned());
-            // The requester may be gone.
+            // The requester may have gone.
             drop(reply.try_send(OperatorReply {
                 refused,
                 status: self.full_status(),
@@ -255,7 +253,7 @@ impl GatewayLoop<'_> {
         Ok(())
     }
 
-    /// Enters the game that was found.
+    /// Enters the game found.
     fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
         let FoundGame {
             bus,
@@ -283,7 +281,7 @@ impl GatewayLoop<'_> {
             )?,
             bus,
         };
-        // The link has been served before: only what needs a field starts here.
+        // The link is in service already: only the parts that need a field start here.
         self.in_game = Some(in_game);
         self.clock.set_pace(factor);
         self.encoder.set_vehicle(vehicle);
@@ -300,13 +298,13 @@ impl GatewayLoop<'_> {
             Call::Order => self.take_order()?,
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None)?,
             // Otherwise the end of every game would be a failsafe. A task of the boat's own
-            // controller continues: it needs no game.
+            // controller continues, since it needs no game.
             Call::Over if self.bridge.state() == State::Armed => {
                 self.remark("the game is over: disarming the boat");
                 self.step(Input::Operator(OperatorCommand::Disarm), None)?;
             }
             Call::Over => {}
-            // Its subject was read before.
+            // The stop or request has been read already.
             Call::Look => {}
             Call::Looking(reason) => (self.notify)(NodeEvent::Looking { reason: &reason }),
             Call::Joined(joined)
@@ -319,7 +317,7 @@ impl GatewayLoop<'_> {
                 self.game_clock
                     .join(self.clock.at(joined.asked), joined.now);
                 if let Some(port) = self.port {
-                    // In a game with keys the port keeps its own.
+                    // In a game with keys, the port keeps its own token.
                     if let Some(known) = self.settings.place.token.get() {
                         port.token().set(Some(known));
                     }
@@ -331,14 +329,14 @@ impl GatewayLoop<'_> {
                 self.remark("joined: the sim accepts the boat's reports");
                 self.step(Input::Joined, None)?;
             }
-            // The ticket would be another boat's: its reports would move that one.
+            // The ticket would belong to a different boat, which our reports would then move.
             Call::Joined(_) => {
                 let reason = "the sim admitted a different boat from the one that asked".to_owned();
                 return Err(NodeError::Refused(reason));
             }
             Call::SimGone => {
-                // Not an error: stale orders stop the boat, and the game's next sim is joined like
-                // this one.
+                // Not an error: stale orders stop the boat, and the gateway joins the game's next
+                // sim in the same way.
                 self.counters.ticket = None;
                 self.remark("lost the sim; waiting for the next");
             }
@@ -387,7 +385,7 @@ impl GatewayLoop<'_> {
     }
 
     fn take_order(&mut self) -> Result<(), NodeError> {
-        // Only the newest order: executing an older one first would delay it.
+        // Use only the newest order: executing an older one first would delay it.
         let taken = self.input.back.latest_order.lock().take();
         let Some((message, came)) = taken else {
             return Ok(());
@@ -409,8 +407,8 @@ impl GatewayLoop<'_> {
             let places = others.iter().map(|&[north, east]| Ned { north, east });
             self.step(Input::Others(places.collect()), None)?;
         }
-        // Checked here as well as in the sim: the core receives only valid numbers, whatever is on
-        // the topic.
+        // Check the order here as well as in the sim: the core receives only valid numbers,
+        // whatever is on the topic.
         let sound = message
             .order
             .order()
@@ -424,7 +422,7 @@ impl GatewayLoop<'_> {
         }
     }
 
-    /// Answers a query; with an objection, nothing that needs the token is done.
+    /// Answers a query; if there is an objection, does nothing that requires the token.
     fn operate(&mut self, query: Query, objection: Option<&str>) -> Result<(), NodeError> {
         let token = self.settings.place.token.get();
         let refused =
@@ -450,7 +448,7 @@ impl GatewayLoop<'_> {
         Ok(())
     }
 
-    /// Executes a command; returns why it is refused.
+    /// Executes a command; returns the reason if it is refused.
     fn execute(&mut self, command: OperatorCommand) -> Result<Option<String>, NodeError> {
         if command == OperatorCommand::Status {
             return Ok(None);
@@ -467,8 +465,8 @@ impl GatewayLoop<'_> {
         self.step_core(input, read).map(drop)
     }
 
-    /// Runs one step of the core; returns why a request was refused. `read` is when the bytes were
-    /// read from the link.
+    /// Runs one step of the core; returns the reason if a request was refused. `read` is when the
+    /// bytes were read from the link.
     fn step_core(
         &mut self,
         input: Input,
@@ -477,7 +475,7 @@ impl GatewayLoop<'_> {
         let now = self.clock.now();
         let mut out = Output::default();
         self.bridge.process(now, &input, &mut out);
-        // The boat first.
+        // The boat comes first.
         if !out.bytes.is_empty() {
             self.counters.tag += 1;
             if let (true, Some(came)) = (out.carries_order, self.counters.order_came.take()) {
@@ -485,7 +483,7 @@ impl GatewayLoop<'_> {
                 let surplus = self.counters.writing.len().saturating_sub(WRITING_MAX);
                 self.counters.writing.drain(..surplus);
             }
-            // Sent before anything is published or recorded, which may be slow.
+            // Send before publishing or recording anything, which may be slow.
             let send = if out.stops {
                 BoatLink::send_stop
             } else {
@@ -505,7 +503,7 @@ impl GatewayLoop<'_> {
                 event,
             });
         }
-        // Operators wait for this: a stop counts as done when the status shows it.
+        // Operators wait for this status: a stop counts as done when the status shows it.
         if out
             .events
             .iter()
@@ -517,7 +515,7 @@ impl GatewayLoop<'_> {
         Ok(out.refused)
     }
 
-    /// Logs a message, unless it was logged just now.
+    /// Logs a message, unless it was logged recently.
     fn remark(&mut self, text: &str) {
         let now = clock::now();
         let (at, last) = &self.counters.remarked;
@@ -528,8 +526,8 @@ impl GatewayLoop<'_> {
         self.log(&Event::Remark(text.to_owned()), text);
     }
 
-    /// Reports an event of the shell; the recording has its text, since only events of the core
-    /// are compared in a replay.
+    /// Reports an event of the shell. The recording contains only its message, since a replay
+    /// compares only events of the core.
     fn log(&mut self, event: &Event, text: &str) {
         let at = self.clock.now();
         (self.notify)(NodeEvent::Event {
@@ -557,13 +555,13 @@ impl InGame {
 }
 
 impl Drop for GatewayLoop<'_> {
-    /// However a gateway ends, except by a kill or a power cut, the boat receives the shutdown
+    /// However a gateway ends, except by a kill or a power cut, it sends the boat the shutdown
     /// message three times before the link closes.
     fn drop(&mut self) {
         // Three times, for links that lose bytes; on every way out of the loop, including a panic.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
-        // After the message: until then the guard must cover a hang.
+        // After the message: until then the guard must cover for a hang.
         self.guarded.iter().for_each(Guarded::end);
     }
 }

@@ -1,10 +1,10 @@
 //! The guard of a gateway: a small process that stops the boat when the gateway dies, hangs or is
 //! suspended.
 //!
-//! It has a duplicate of the link, which outlives a killed process, and one end of a socket pair.
-//! Over that the gateway sends the stop message of its protocol, a heartbeat from its loop, every
-//! new link, and notice of an orderly exit. Without a heartbeat for [`SILENCE`], or when the other
-//! end closes, it writes the stop message: zero thrust and standby.
+//! It holds a duplicate of the link, which outlives a killed process, and one end of a socket pair,
+//! through which the gateway sends the stop message of its protocol, a heartbeat from its loop,
+//! every new link, and notice of an orderly exit. Without a heartbeat for [`SILENCE`], or when the
+//! other end closes, it writes the stop message: zero thrust and standby.
 
 use bus::clock;
 use parking_lot::Mutex;
@@ -25,18 +25,18 @@ use std::time::Duration;
 
 /// How often the loop sends a heartbeat.
 pub(super) const HEARTBEAT: Duration = Duration::from_millis(100);
-/// After this long without a heartbeat, the gateway is treated as hung.
+/// Time without a heartbeat after which the gateway is treated as hung.
 const SILENCE: Duration = Duration::from_millis(400);
-/// After this long the loop itself assumes that the guard has stopped the boat: less, so that the
-/// two never disagree.
+/// Time without a heartbeat after which the loop itself assumes that the guard has stopped the
+/// boat: shorter, so that the two never disagree.
 pub(super) const HUNG: Duration = Duration::from_millis(350);
-/// How often the guard sends standby while the gateway hangs, and how many times after it has died.
+/// Interval at which the guard repeats standby while the gateway hangs or after it has died.
 const AGAIN: Duration = Duration::from_millis(100);
 const LAST_WORDS: usize = 4;
 /// Maximum time to write one sentence.
 const WRITE_MAX: Duration = Duration::from_millis(50);
 
-/// Messages to the guard: one byte each; the stop message follows its byte.
+/// Messages to the guard: one byte each. The stop message follows its byte.
 const ALIVE: u8 = b'.';
 const LINK: u8 = b'+';
 const NO_LINK: u8 = b'-';
@@ -58,11 +58,11 @@ struct Inner {
 }
 
 impl Guarded {
-    /// Starts the guard with a command that calls [`guard`] on its standard input; the message
+    /// Starts the guard with a command that calls [`guard`] on its standard input. The message
     /// `stop` stops the boat.
     pub(super) fn start(mut command: Command, stop: &[u8]) -> io::Result<Guarded> {
-        // Packets keep their boundaries, can carry descriptors, and the kernel notifies the other
-        // end when a process dies.
+        // Packets keep their boundaries and can carry descriptors, and the kernel notifies the
+        // other end when a process dies.
         let (socket, its_end) = socketpair(
             AddressFamily::UNIX,
             SocketType::SEQPACKET,
@@ -91,7 +91,7 @@ impl Guarded {
         self.send(&[ALIVE], None) || self.0.is_gone.swap(true, Ordering::Relaxed)
     }
 
-    /// Sets the stop message from now on.
+    /// Sets the stop message to use from now on.
     pub(super) fn stop_with(&self, message: &[u8]) {
         let mut stop = self.0.stop.lock();
         if *stop != message && self.send(&[&[STOP], message].concat(), None) {
@@ -107,13 +107,13 @@ impl Guarded {
         );
     }
 
-    /// Reports that the gateway has stopped the boat itself, and exits.
+    /// Reports that the gateway has stopped the boat itself and is exiting.
     pub(super) fn end(&self) {
         self.send(&[ENDS], None);
     }
 
-    /// Whether the message was delivered. A suspended guard eventually accepts no more data, but
-    /// still exists.
+    /// Whether the message was delivered, or the guard still exists: a suspended guard eventually
+    /// accepts no more data.
     fn send(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
@@ -134,7 +134,7 @@ impl Guarded {
 
 impl Drop for Inner {
     fn drop(&mut self) {
-        // A guard that did not receive the notice of exit treats this as the death of the process.
+        // A guard that did not receive the exit notice treats this as the death of the process.
         let _ = shutdown(&self.socket, Shutdown::Both);
         drop(self.process.lock().wait());
     }
@@ -145,7 +145,7 @@ enum Heard {
     Told(u8, Option<OwnedFd>),
     /// The stop message.
     Stop(Vec<u8>),
-    /// Nothing for [`SILENCE`], or for as long as it waits.
+    /// Nothing within [`SILENCE`], or within the whole wait.
     Nothing,
     /// The other end has closed.
     Died,
@@ -179,15 +179,15 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
                         remark("the gateway has hung: sending zero thrust and standby to its boat");
                     }
                 }
-                // Without a link there is nothing to send, and no one to notify of the hang.
+                // Without a link there is nothing to send, and no hang to report.
                 is_hung |= link.is_some();
             }
             Heard::Died => {
                 let Some(link) = &link else { return Ok(()) };
                 write(link, &stop);
                 remark("the gateway has died: sending zero thrust and standby to its boat");
-                // Repeated, for links that lose bytes, and against data that the dead gateway had
-                // queued in the kernel.
+                // Repeat it, for links that lose bytes, and because the dead gateway may have left
+                // data queued in the kernel.
                 for _ in 1..LAST_WORDS {
                     clock::rest(AGAIN);
                     write(link, &stop);
@@ -202,7 +202,7 @@ fn hear(socket: BorrowedFd<'_>) -> io::Result<Heard> {
     let mut bytes = [0; TOLD_MAX];
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
     let mut control = RecvAncillaryBuffer::new(&mut space);
-    // A signal does not count as silence.
+    // A signal does not end the wait.
     let received = rustix::io::retry_on_intr(|| {
         recvmsg(
             socket,
@@ -234,7 +234,7 @@ fn write(link: &OwnedFd, bytes: &[u8]) {
     while !rest.is_empty() && clock::since(start) < WRITE_MAX {
         match rustix::io::write(link, rest) {
             Ok(count) => rest = &rest[count..],
-            // Sockets have already waited for a moment; serial lines have not.
+            // Sockets have already waited briefly; serial lines have not.
             Err(rustix::io::Errno::AGAIN | rustix::io::Errno::INTR) => {
                 clock::rest(Duration::from_millis(2))
             }
@@ -250,7 +250,7 @@ mod tests {
 
     #[test]
     fn a_guard_that_was_not_told_of_the_end_is_not_waited_for_without_end() {
-        // Like a guard, it reads until the other end closes.
+        // Like a guard, `cat` reads until the other end closes.
         let guarded = Guarded::start(Command::new("cat"), b"stop").expect("it starts");
         let (sender, dropped) = channel();
         std::thread::spawn(move || {

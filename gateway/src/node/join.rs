@@ -1,5 +1,4 @@
-//! Keeps the gateway in the game: joins whenever a sim is available, for as long as the gateway
-//! runs.
+//! Keeps the gateway in the game: joins whenever a sim is available, as long as the gateway runs.
 
 use super::POLL;
 use super::loop_input::Call;
@@ -27,7 +26,7 @@ impl Join {
         vehicle: &str,
         calls: InboxSender<Call>,
     ) -> Result<Join, BusError> {
-        // Only its token matters: the gateway waits for a sim that hangs, and its boat rests
+        // Only the sim's token matters: the gateway waits for a sim that hangs, and the boat rests
         // without orders.
         let sim = SimWatch::open(bus, game, Patience::of_player(Duration::MAX))?;
         let stop = Arc::new(AtomicBool::new(false));
@@ -55,12 +54,12 @@ impl Join {
 
 impl Drop for Join {
     fn drop(&mut self) {
-        // The thread is waited for when the fields are dropped.
+        // Dropping the fields waits for the thread.
         self.stop.store(true, Ordering::Relaxed);
     }
 }
 
-/// Joins, waits until the sim is lost, and starts again with the next one.
+/// Joins, waits until the sim is lost, and repeats this with the next sim.
 fn keep_joined(
     join: &impl Fn() -> Result<Joined, Missing>,
     sim: &SimWatch,
@@ -74,7 +73,7 @@ fn keep_joined(
         let mut say = |reason: &str| calls.put(Call::Remark(format!("joining: {reason}")));
         match GameSearch::new(Duration::MAX, stop).until(&mut say, join) {
             Ok(joined) => calls.put(Call::Joined(joined)),
-            // Keep trying: the gateway that has the boat may be about to leave, or the next sim
+            // Keep trying: the gateway that holds the boat may be about to leave, or the next sim
             // may have the boat.
             Err(NotFound::Refused(refusal)) => {
                 calls.put(Call::Remark(format!("refused by the sim: {refusal}")))

@@ -15,11 +15,10 @@ use std::time::{Duration, Instant};
 
 /// Maximum number of calls that wait for the loop.
 const CALLS_MAX: usize = 4096;
-/// Maximum number of operator requests that wait, counted separately for the hub and the control
-/// port.
+/// Maximum number of waiting operator requests, separately for the hub and the control port.
 const REQUESTS_MAX: usize = 64;
 
-/// The events that wake the loop.
+/// An event that wakes the loop.
 pub(super) enum Call {
     Link(LinkEvent),
     /// `latest_order` holds a new order.
@@ -31,19 +30,19 @@ pub(super) enum Call {
     /// The game has ended.
     Over,
     SimGone,
-    /// There is no game yet, for this reason.
+    /// There is no game yet, for the given reason.
     Looking(String),
     Remark(String),
 }
 
-/// A request at the control port, and where its reply goes.
+/// A request at the control port, and the destination of its reply.
 pub(super) type PortRequest = (GatewayCommand, SyncSender<OperatorReply>);
 
-/// The end to which other threads write.
+/// The end for writing, used by other threads.
 #[derive(Clone)]
 pub(super) struct LoopInput {
     pub(super) calls: InboxSender<Call>,
-    /// The latest order and its arrival time. Only the latest one waits, however many arrive.
+    /// The latest order and its arrival time. Only the latest order waits, however many arrive.
     pub(super) latest_order: Arc<Mutex<Option<(ExternalOrder, Instant)>>>,
     stops: Arc<Stops>,
     found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
@@ -51,7 +50,7 @@ pub(super) struct LoopInput {
     port_requests: InboxSender<PortRequest>,
 }
 
-/// The end from which the loop reads.
+/// The end for reading, used by the loop.
 pub(super) struct LoopOutput {
     pub(super) calls: Inbox<Call>,
     pub(super) queries: Inbox<Query>,
@@ -68,7 +67,7 @@ pub(super) enum Stop {
 }
 
 impl Stop {
-    /// The stop that a command to this boat requests, if any.
+    /// The stop requested by a command to this boat, if any.
     pub(super) fn of(command: &OperatorCommand) -> Option<Stop> {
         match command {
             OperatorCommand::EStop => Some(Stop::EStop(Scope::Boat)),
@@ -78,17 +77,16 @@ impl Stop {
     }
 }
 
-/// Stops received but not yet executed. Nothing is queued ahead of them, and nothing can displace
-/// them.
+/// Stops received but not yet executed. Nothing is queued ahead of them or can displace them.
 #[derive(Default)]
 struct Stops {
-    // Flags instead of a queue, which could be flooded.
+    // Flags, not a queue, which could be flooded.
     boat: AtomicBool,
     fleet: AtomicBool,
     disarm: AtomicBool,
     /// The number of stops received.
     count: AtomicU64,
-    /// The boat's state, and the number of stops executed by then.
+    /// The boat's state, and the number of stops executed before it.
     state: Watched<(u64, String)>,
 }
 
@@ -131,10 +129,10 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
 impl LoopInput {
     /// Adds a stop. Returns the number of stops received.
     pub(super) fn stop(&self, stop: Stop) -> u64 {
-        // Sequentially consistent, like everything about stops: a thread that sees the count also
+        // Sequentially consistent, like all accesses to stops: a thread that sees the count also
         // sees the flag.
         let is_first = !self.stops.of(stop).swap(true, Ordering::SeqCst);
-        // Counted once it is visible.
+        // Count the stop once it is visible.
         let count = self.stops.count.fetch_add(1, Ordering::SeqCst) + 1;
         // Only the first of several wakes the loop, so they cannot fill the inbox.
         if is_first {
@@ -161,7 +159,7 @@ impl LoopInput {
             .visit(|(carried_out, state)| (*carried_out >= count).then(|| state.clone()))
     }
 
-    /// Sets the game, or why there is none. This cannot be displaced either.
+    /// Sets the game, or the reason why there is none. This cannot be displaced either.
     pub(super) fn found(&self, found: Result<FoundGame, NodeError>) {
         *self.found.lock() = Some(found);
         self.wake();
@@ -179,8 +177,8 @@ impl LoopInput {
         self.wake();
     }
 
-    /// May be dropped if the inbox is full: then the loop has calls to read, and checks everything
-    /// else before each of them.
+    /// The call may be dropped if the inbox is full: then the loop has calls to read, and checks
+    /// everything else before each of them.
     fn wake(&self) {
         self.calls.put(Call::Look);
     }
@@ -202,7 +200,7 @@ impl LoopOutput {
         self.back.stops.count.load(Ordering::SeqCst)
     }
 
-    /// Publishes the boat's state, and the number of stops executed before.
+    /// Publishes the boat's state, and the number of stops executed before it.
     pub(super) fn show_state(&self, stop_count: u64, state: String) {
         self.back
             .stops

@@ -3,9 +3,10 @@
 use crate::preflight::Check;
 use std::path::Path;
 
-/// Minimum free disk space for a gateway's recording, MiB; a day takes a tenth of it.
+/// Minimum free disk space for a gateway's recording, MiB; a day of recording takes a tenth of
+/// this.
 const SPACE_MIN_MIB: u64 = 1024;
-/// Where systemd lists its inhibitors.
+/// The folder where systemd lists its inhibitors.
 const INHIBITORS: &str = "/run/systemd/inhibit";
 
 /// Checks whether this folder has space for recordings, and whether something prevents the machine
@@ -54,13 +55,13 @@ fn sleep(inhibitors: &Path) -> Check {
     )
 }
 
-/// The name of the process that prevents sleep by this entry, if it does.
+/// The name of the process that prevents sleep with this entry, if the entry does.
 fn sleep_inhibitor(text: &str) -> Option<String> {
     let value = |key: &str| {
         text.lines()
             .find_map(|line| line.strip_prefix(key)?.strip_prefix('='))
     };
-    // An inhibitor of mode "delay" only delays sleep by a few seconds.
+    // An inhibitor with the mode "delay" only delays sleep by a few seconds.
     let blocks = value("MODE")? == "block" && value("WHAT")?.split(':').any(|what| what == "sleep");
     blocks.then(|| value("WHO").unwrap_or("somebody").to_owned())
 }

@@ -1,7 +1,7 @@
 //! The network shell: connects a real boat to a game, and emulates a boat for real back seats.
 //!
 //! [`serve`] is for a real boat, `emulate` for a simulated one. All decisions are made in
-//! [`crate::bridge`] and `crate::emulator`; the sockets, clocks and threads are here.
+//! [`crate::bridge`] and `crate::emulator`; this module contains the sockets, clocks and threads.
 
 mod clock;
 mod control_port;
@@ -53,16 +53,16 @@ use std::process::Command;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-/// How often a thread that waits for something else checks whether it must end.
+/// Interval at which a waiting thread checks whether it must end.
 const POLL: Duration = Duration::from_millis(100);
 
 /// A gateway's connections other than the game's network: the boat, and a port for operators.
 pub struct Outside {
     /// The address of the boat.
     pub link: LinkAddress,
-    /// After this long without a byte, the boat is treated as lost.
+    /// Time without a byte after which the boat is treated as lost.
     pub silence: Duration,
-    /// Where the control port listens; port 0 means any free port.
+    /// The address of the control port; port 0 means any free port.
     pub control: SocketAddr,
     /// Starts the process that calls [`guard()`] and stops the boat when this process cannot;
     /// `None` means no guard.
@@ -72,9 +72,9 @@ pub struct Outside {
 /// The callback for a link's events.
 pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 
-/// Connects a real boat to a game until it is stopped. The link comes first, and the boat first
-/// receives standby; the gateway searches for the game while it serves operators. However it ends,
-/// the boat receives standby.
+/// Connects a real boat to a game until it is stopped. It first opens the link and sends the boat
+/// standby, then searches for the game while serving operators. However it ends, it sends the boat
+/// standby.
 ///
 /// # Errors
 /// [`NodeError`] if another gateway on this machine holds the link, if the game refuses, or if the
@@ -101,11 +101,9 @@ pub fn serve(
         }
     };
     let input = loop_input();
-    // The token as known by now: nothing waits for it, and it is not an error if there is no game
-    // yet.
+    // The token known so far. Nothing waits for it, and it is not an error if there is no game yet.
     drop(settings.place.net(settings.game.as_ref()));
-    // Until a game provides one, the port has its own token; in a game with keys it keeps
-    // that.
+    // Until a game provides a token, the port has its own; in a game with keys it keeps that one.
     let token = settings.place.token.get().unwrap_or_else(Token::random);
     // Before the link: a port in use is an error before the boat receives anything from us.
     let port = ControlPort::open(
@@ -135,7 +133,7 @@ pub fn serve(
     connect(settings, input, file, (Some(port), guarded), open, notify)
 }
 
-/// Warns before the gateway's time begins.
+/// Warns before the gateway's clock starts.
 fn warn(notify: &mut dyn FnMut(NodeEvent<'_>), text: String) {
     notify(NodeEvent::Event {
         at_s: 0.0,
@@ -143,13 +141,13 @@ fn warn(notify: &mut dyn FnMut(NodeEvent<'_>), text: String) {
     });
 }
 
-/// Starts the guard. If it cannot start, the boat is not abandoned.
+/// Starts the guard. If the guard cannot start, the boat is still served.
 fn start_guard(
     settings: &Settings,
     mut command: Command,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Option<Guarded> {
-    // Without the environment it has no token and no address, and needs neither.
+    // Without the environment the guard has no token and no address, and needs neither.
     command.env_clear();
     let started = Guarded::start(
         command,
@@ -192,8 +190,8 @@ fn connect(
     let recorder = file.and_then(|file| recorder(file, settings, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
-    // From here on time is the core's: a recording begins at zero, and replays with the same
-    // numbers.
+    // From here on time is that of the core: a recording begins at zero, and a replay has the same
+    // times.
     let clock = Clock::start();
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
@@ -211,8 +209,8 @@ fn connect(
         guard: Guard::new(settings.place.token.clone()),
         port: port.as_ref(),
     };
-    // On its own thread: a gateway that searched for its game first left a moving boat unattended
-    // in the meantime.
+    // On its own thread: a gateway that first searched for its game left a moving boat unattended
+    // meanwhile.
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {
@@ -225,12 +223,12 @@ fn connect(
         gateway_loop.await_boat();
     }
     let status = gateway_loop.full_status();
-    // The boat is stopped before the network closes.
+    // Stop the boat before closing the network.
     let in_game = gateway_loop.in_game.take();
     let recorder = gateway_loop.recorder.take();
     drop(gateway_loop);
     let recorded = recorder.map(|recorder| recorder.end(Facts::new()));
-    // Ends in every case, as does the search for a game.
+    // Set in every case; this also ends the search for a game.
     settings.stop.store(true, Ordering::Relaxed);
     drop((port, finder));
     notify(NodeEvent::Ended(&status));
@@ -242,7 +240,7 @@ fn connect(
     })
 }
 
-/// Starts the recording. If it cannot start, the boat is not abandoned.
+/// Starts the recording. If it cannot start, the boat is still served.
 fn recorder(
     file: NewFile,
     settings: &Settings,

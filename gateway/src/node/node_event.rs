@@ -1,4 +1,4 @@
-//! What a node reports to the program that runs it.
+//! The events that a node reports to the program that runs it.
 
 use crate::bridge::Event;
 use bus::Token;
@@ -6,38 +6,38 @@ use messages::external::GatewayStatus;
 use std::net::SocketAddr;
 use std::path::Path;
 
-/// What a node reports to the program that runs it.
+/// An event that a node reports to the program that runs it.
 pub enum NodeEvent<'a> {
-    /// The node cannot begin yet.
+    /// The node cannot start yet.
     Looking {
         /// The cause.
         reason: &'a str,
     },
-    /// Something happened.
+    /// An event occurred.
     Event {
-        /// Time since it began, s.
+        /// Time since the node started, s.
         at_s: f64,
-        /// What.
+        /// The event.
         event: &'a Event,
     },
     /// The status, twice a second.
     Status(&'a GatewayStatus),
-    /// It has ended, with this status.
+    /// The node has ended with this status.
     Ended(&'a GatewayStatus),
-    /// It records into this file.
+    /// The node records into this file.
     Recording(&'a Path),
-    /// The control port is open, or requires another token from now on.
+    /// The control port is open, or requires a different token from now on.
     ControlPort {
-        /// Where it listens.
+        /// The address of the port.
         address: SocketAddr,
-        /// The token that it requires, if known.
+        /// The required token, if known.
         token: Option<Token>,
     },
-    /// Others can connect here.
+    /// A port is open for connections.
     Listening {
-        /// Which port this is.
+        /// The purpose of the port.
         what: &'a str,
-        /// Its address.
+        /// The port's address.
         reach: &'a str,
     },
 }

@@ -1,5 +1,5 @@
-//! The reports of a running gateway: status, navigation and link bytes to the sim, and all of it to
-//! the recording.
+//! The reports of a running gateway: status, navigation and link bytes to the sim, and all of these
+//! to the recording.
 
 use super::error::NodeError;
 use super::gateway_loop::GatewayLoop;
@@ -48,7 +48,7 @@ impl GatewayLoop<'_> {
         status
     }
 
-    /// Warns once if the recording ends before the gateway does, or loses entries.
+    /// Warns once if the recording ends before the gateway, or loses entries.
     pub(super) fn check_recording(&mut self) {
         let Some(fault) = self
             .recorder
@@ -74,7 +74,7 @@ impl GatewayLoop<'_> {
         Ok(())
     }
 
-    /// Publishes the bytes that went over the link, and records the whole step.
+    /// Publishes the bytes sent over the link, and records the whole step.
     pub(super) fn record_step(
         &mut self,
         now: SimTime,
@@ -82,7 +82,7 @@ impl GatewayLoop<'_> {
         out: &Output,
     ) -> Result<(), NodeError> {
         let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
-        // Encode only for a reader: without a recorder and observers the bytes are dropped here.
+        // Encode only for a reader: without a recorder or observers, the bytes are dropped here.
         let ticket = self
             .counters
             .ticket

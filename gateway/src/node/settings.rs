@@ -12,13 +12,13 @@ use std::time::Duration;
 pub struct Settings {
     /// The boat, and how it is driven and stopped; its site comes from the game.
     pub plan: Plan,
-    /// The game; without a name, the only one there is.
+    /// The game; `None` means the only one available.
     pub game: Option<GameName>,
-    /// Where the sim is.
+    /// The location of the sim.
     pub place: Place,
-    /// Whether its clock runs at the game's pace: for emulated boats.
+    /// Whether the gateway's clock runs at the game's pace, for emulated boats.
     pub at_game_pace: bool,
-    /// The commit that the program was built from.
+    /// The commit from which the program was built.
     pub commit: &'static str,
     /// How long to look for the game.
     pub wait: Duration,

@@ -1,4 +1,4 @@
-//! The UDP port at which ArduPilot's firmware (SITL) asks for the motion of its boat.
+//! The UDP port at which ArduPilot's firmware (SITL) requests the motion of its boat.
 
 use super::error::NodeError;
 use crate::emulator::{FrontSeat, Servos, Sitl};
@@ -12,14 +12,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How soon a firmware that waits for the simulation receives its reply.
+/// Interval at which the reply to a waiting firmware is attempted.
 const REPLY_WAIT: Duration = Duration::from_millis(2);
-/// Another firmware may use the port after its user was silent for this long.
+/// Silence of the current firmware after which a different one may use the port.
 const IDLE_MAX: Duration = Duration::from_secs(3);
-/// More than any datagram of a firmware.
+/// Larger than any datagram of the firmware.
 const DATAGRAM_MAX: usize = 512;
 
-/// The firmware as the boat's front seat. Its port is open as long as this exists.
+/// The firmware as the boat's front seat. The port is open as long as this value exists.
 pub(super) struct SitlPort {
     firmware: Arc<Mutex<Sitl>>,
     stop: Arc<AtomicBool>,
@@ -50,7 +50,7 @@ impl SitlPort {
         })
     }
 
-    /// Its address.
+    /// The port's address.
     pub(super) fn address(&self) -> SocketAddr {
         self.address
     }
@@ -80,12 +80,12 @@ impl FrontSeat for SitlPort {
     }
 }
 
-/// Answers one firmware until the port closes.
+/// Answers one firmware instance until the port closes.
 fn serve(socket: &UdpSocket, firmware: &Mutex<Sitl>, stop: &AtomicBool) {
     let mut user: Option<(SocketAddr, std::time::Instant)> = None;
     let mut buffer = [0; DATAGRAM_MAX];
     while !stop.load(Ordering::Relaxed) {
-        // A timeout, or the error of an earlier reply to a closed port: the reply may be due.
+        // A timeout, or the error of an earlier reply to a closed port: a reply may be due.
         if let Ok((count, from)) = socket.recv_from(&mut buffer) {
             let is_taken =
                 user.is_some_and(|(by, heard)| by != from && clock::since(heard) < IDLE_MAX);

@@ -25,19 +25,19 @@ pub(super) fn subscribe(
             return;
         };
         let mut latest_order = orders.latest_order.lock();
-        // A pending call will pick up the latest order.
+        // The pending call will pick up the latest order.
         if latest_order.replace((order, bus::clock::now())).is_none() {
             orders.calls.put(Call::Order);
         }
     };
     let name = &scenario.vehicles[vehicle.index()].name;
     Ok(vec![
-        // From the sim, not from agents: only the sim knows whose order counts (tickets), what the
-        // referee allows, and when an agent is lost. A second implementation of these rules would
-        // eventually diverge.
+        // Subscribe to the sim, not to agents: only the sim knows whose order counts (tickets),
+        // what the referee allows, and when an agent is lost. A second implementation of these
+        // rules would eventually diverge.
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
-            // The query is processed again, after those queued before it, to send the reply.
+            // The query is processed again after those queued before it, to send the reply.
             let command =
                 Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
             if let Checked::Granted(command) = command

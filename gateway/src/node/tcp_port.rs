@@ -1,4 +1,4 @@
-//! A TCP port that is served until dropped, with one thread for each of a limited number of
+//! A TCP port that is served until dropped, with one thread per connection and a limited number of
 //! connections.
 
 use super::POLL;
@@ -30,8 +30,7 @@ struct Server {
 }
 
 impl TcpPort {
-    /// Opens a port for this many connections; a new one displaces the one that has been idle
-    /// longest.
+    /// Opens a port for this many connections; a new connection displaces the one idle for longest.
     pub(super) fn open(
         listen: SocketAddr,
         name: &str,
@@ -79,20 +78,20 @@ impl Server {
             match listener.accept() {
                 Ok((stream, from)) => self.open(stream, from.ip()),
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-                // For example too many open files, which may pass.
+                // For example too many open files, which may be temporary.
                 Err(_) => clock::rest(POLL),
             }
         }
     }
 
-    /// Starts a connection's thread. Without a thread, the connection is closed.
+    /// Starts the thread of a connection. Without a thread, the connection is closed.
     fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
         let Ok(other) = stream.try_clone() else {
             return;
         };
         // The reading thread will notice; the stream may be closed already.
-        // The connection that has been idle longest is closed, so that many silent connections
-        // cannot lock anyone out.
+        // Close the connection that has been idle longest, so that many silent connections cannot
+        // lock anyone out.
         let slot = self
             .connections
             .admit(from, move || drop(other.shutdown(Shutdown::Both)));

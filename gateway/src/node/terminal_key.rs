@@ -1,4 +1,4 @@
-//! A key in the terminal of a gateway: Enter.
+//! The Enter key in the terminal of a gateway.
 
 use bus::clock;
 use rustix::fs::OFlags;
@@ -13,7 +13,7 @@ const POLL: Duration = Duration::from_millis(50);
 /// Calls `pressed` whenever Enter is pressed in this process's terminal, while it has one.
 ///
 /// The system suspends a background process that reads from its terminal, while its boat continues.
-/// Therefore nothing is read unless this process is in the foreground, and no read blocks.
+/// Therefore the thread reads only while this process is in the foreground, and no read blocks.
 pub fn on_enter(pressed: impl Fn() + Send + 'static) {
     let flags = OFlags::NONBLOCK.bits().cast_signed();
     let Ok(mut terminal) = OpenOptions::new()
@@ -40,7 +40,7 @@ pub fn on_enter(pressed: impl Fn() + Send + 'static) {
             }
         }
     };
-    // Without a thread the key does not work; nothing else is lost.
+    // Without a thread only the key does not work.
     drop(
         std::thread::Builder::new()
             .name("terminal key".to_owned())

@@ -10,12 +10,12 @@ use crate::sensor_check::{HostTime, SensorCheck};
 use primitives::frame::LatLon;
 use rules::Field;
 
-/// Maximum distance of 95 of 100 fixes of a boat at rest from their mean, and maximum drift of that
-/// mean, m.
+/// Maximum scatter of the fixes of a boat at rest, m: the radius around their mean with 95 of 100
+/// fixes, and the drift of that mean.
 const SCATTER_MAX_M: f64 = 2.5;
 /// How long fixes are collected, s.
 const SCATTER_S: f64 = 25.0;
-/// The water on which the boat will play.
+/// The water on which the boat will drive.
 pub struct Water {
     /// The field.
     pub field: Field,
@@ -23,7 +23,7 @@ pub struct Water {
     pub area: GeofenceArea,
 }
 
-/// The checks of what a boat has sent so far, by the host's clock.
+/// The checks of the data that a boat has sent so far, by the host's clock.
 pub fn boat_checks(
     seen: &SensorCheck,
     host: HostTime,
@@ -153,8 +153,8 @@ fn compass(seen: &SensorCheck) -> Check {
 fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(control) = seen.control else {
         let found = "the boat does not report who commands it";
-        // For boats without such a sentence the file may state it: then a person takes
-        // responsibility for who has control.
+        // For boats without such a sentence, the file may state who has control: then a person
+        // takes responsibility.
         return Check::of(
             "control",
             gateway.control.assumed,
@@ -245,8 +245,8 @@ mod tests {
         Water { field, area }
     }
 
-    /// A minute of a boat around this point of the field: its GGA from the fifth field on, and its
-    /// other sentences.
+    /// The sentences of a boat that stays near this point of the field for a minute: its GGA from
+    /// the fifth field on, and its other sentences.
     fn seen(water: &Water, [x, y]: [f64; 2], fix: &str, more: &[&str]) -> SensorCheck {
         let frame = LocalFrame::new(water.field.plan.datum);
         let mut check = SensorCheck::new(&crate::config::default_gateway());

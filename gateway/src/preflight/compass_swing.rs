@@ -1,4 +1,4 @@
-//! A compass swing: the boat is turned through all headings, and the deviation of its compass is
+//! A compass swing: the boat turns through all headings, and the deviation of its compass is
 //! fitted.
 //!
 //! The deviation is A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h (Bowditch,
@@ -11,13 +11,13 @@ use std::f64::consts::TAU;
 
 /// Maximum number of pairs stored.
 const PAIRS_MAX: usize = 20_000;
-/// The number of heading sectors, each of which needs pairs.
+/// Number of heading sectors, each of which needs pairs.
 const SECTORS: usize = 12;
 
 /// Pairs of compass and true headings.
 #[derive(Clone, Debug, Default)]
 pub struct CompassSwing {
-    /// True heading, and the value to add to the compass reading, rad.
+    /// True heading, and the correction to the compass reading, rad.
     pairs: Vec<(f64, f64)>,
 }
 
@@ -28,12 +28,12 @@ pub struct Deviation {
     pub a_to_e_deg: [f64; 5],
     /// The standard deviation of the residual, degrees.
     pub residual_deg: f64,
-    /// Its largest value on any heading, degrees.
+    /// The largest absolute deviation on any heading, degrees.
     pub largest_deg: f64,
 }
 
 impl CompassSwing {
-    /// Adds a compass heading, with the declination, and a true one of the same moment, rad.
+    /// Adds a compass heading, corrected for declination, and the simultaneous true heading, rad.
     pub fn add_reading(&mut self, compass_rad: f64, true_rad: f64) {
         if self.pairs.len() < PAIRS_MAX && compass_rad.is_finite() && true_rad.is_finite() {
             self.pairs
@@ -51,19 +51,19 @@ impl CompassSwing {
         seen.iter().filter(|seen| **seen).count()
     }
 
-    /// The deviation by least squares, once the boat has pointed in all directions.
+    /// Fits the deviation by least squares, once the boat has pointed in all directions.
     ///
     /// # Errors
     /// The missing condition.
     pub fn fit(&self) -> Result<Deviation, String> {
         let sectors = self.sectors();
-        // With only part of the circle, the sines of one and two turns cannot be distinguished.
+        // With only part of the circle, the sines of one and two turns cannot be separated.
         if sectors < SECTORS {
             return Err(format!(
                 "{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"
             ));
         }
-        // Relative to their mean, so that angles near half a turn do not wrap.
+        // Relative to the mean, so that angles near half a turn do not wrap.
         let [sin, cos] = self.pairs.iter().fold([0.0; 2], |[s, c], (_, off)| {
             let (sin, cos) = math::sin_cos(*off);
             [s + sin, c + cos]

@@ -1,4 +1,4 @@
-//! The scatter of the fixes of a boat at rest.
+//! The scatter of fixes of a boat at rest.
 
 use crate::geodesy::LocalFrame;
 use primitives::frame::{LatLon, Ned};
@@ -6,16 +6,16 @@ use primitives::frame::{LatLon, Ned};
 /// The scatter of fixes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FixScatter {
-    /// The distance from their mean that contains 95 of 100 fixes, m.
+    /// The radius around the mean that contains 95 of 100 fixes, m.
     pub(super) radius_95_m: f64,
     /// The distance between the means of the first and second half, m.
     pub(super) drift_m: f64,
 }
 
 impl FixScatter {
-    /// The scatter of these fixes, in order of arrival; `None` for fewer than ten.
+    /// The scatter of these fixes, given in order of arrival; `None` for fewer than ten.
     pub(super) fn of(fixes: &[LatLon]) -> Option<FixScatter> {
-        // For fewer fixes the 95th percentile is the worst of them.
+        // With fewer fixes the 95th percentile is the worst fix.
         if fixes.len() < 10 {
             return None;
         }
@@ -54,7 +54,7 @@ mod tests {
                 .map(|i| frame.lat_lon(place(f64::from(i))))
                 .collect()
         };
-        // Around a circle of 2 m, with four of a hundred far off, evenly spaced around it.
+        // On a circle of 2 m, with four of a hundred far off, evenly spaced around the circle.
         let round = fixes(&|i| {
             Ned::toward_deg(i * 90.0 + 3.6 * i).scaled(if i < 4.0 { 50.0 } else { 2.0 })
         });

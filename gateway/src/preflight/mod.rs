@@ -9,7 +9,7 @@ pub use compass_swing::{CompassSwing, Deviation};
 
 use serde::{Deserialize, Serialize};
 
-/// A report must contain these for a boat to be armed.
+/// The checks that a report must contain before a boat can be armed.
 const NEEDED: [&str; 6] = [
     "sentences",
     "fix",
@@ -75,14 +75,15 @@ pub struct Report {
     pub link: String,
     /// The time, s since 1970 in UTC.
     pub at_unix_s: u64,
-    /// The same time as text.
+    /// The same time as a string.
     pub at: String,
     /// The checks, in this order.
     pub checks: Vec<Check>,
 }
 
 impl Report {
-    /// The reasons why it has not passed: failed checks, and required checks that were not done.
+    /// The reasons why the check has not passed: failed checks, and required checks that were not
+    /// done.
     pub fn faults(&self) -> Vec<String> {
         let failed = self
             .checks
@@ -101,10 +102,10 @@ impl Report {
         failed.chain(missing).collect()
     }
 
-    /// Whether it allows a gateway to this boat to arm.
+    /// Whether the report allows a gateway to arm this boat.
     ///
     /// # Errors
-    /// The reason why not.
+    /// The reason for refusal.
     pub fn admits(
         &self,
         vehicle: &str,
@@ -133,7 +134,7 @@ impl Report {
         ))
     }
 
-    /// The report as text.
+    /// The report as a string.
     pub fn text(&self) -> String {
         let line = |check: &Check| {
             let verdict = match check.verdict {

@@ -1,4 +1,4 @@
-//! What all protocols have in common: their commands, and their end of a link.
+//! The interface that all protocols share: their commands, and their end of a link.
 
 use super::report::{Report, Shown};
 use crate::config::SwitchWord;
@@ -12,9 +12,9 @@ use primitives::SimTime;
 pub enum Command {
     /// Stop, and stay passive.
     Standby,
-    /// Standby, and set this switch, if the boat has such a switch.
+    /// Standby, and set this switch, if the boat has it.
     Switch(SwitchWord),
-    /// Zero thrust, whatever the boat does; it does not make it follow set-points.
+    /// Zero thrust, whatever the boat's state; does not make the boat follow set-points.
     Zero,
     /// Follow this set-point.
     SetPoint(SetPoint),
@@ -27,13 +27,13 @@ pub enum Command {
 /// The progress of a mission upload.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum UploadStep {
-    /// Something was sent.
+    /// A message was sent.
     Sent,
     /// Nothing is due yet.
     Waiting,
-    /// The boat has all of it.
+    /// The boat has the whole mission.
     Done,
-    /// The boat rejects it, for this reason.
+    /// The boat rejects the mission, for the given reason.
     Failed(String),
 }
 
@@ -44,19 +44,19 @@ pub(crate) fn named<const N: usize>(counts: [(&str, u64); N]) -> Vec<(String, u6
 
 /// One end of a link that speaks a protocol.
 pub trait Codec {
-    /// Starts a new link: the state of the previous one is discarded.
+    /// Starts a new link, discarding the state of the previous one.
     fn begin_link(&mut self);
 
-    /// Reads bytes from the boat, in any split.
+    /// Reads bytes from the boat, however they are split.
     fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report));
 
     /// Appends the bytes of a command.
     fn write(&mut self, now: SimTime, command: Command, out: &mut Vec<u8>);
 
-    /// Appends messages due without a command, such as a heartbeat or answers to the boat.
+    /// Appends messages due without a command, such as a heartbeat or replies to the boat.
     fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>);
 
-    /// Whether its boats have the modes of [`messages::external::BoatMode`].
+    /// Whether boats with this protocol have the modes of [`messages::external::BoatMode`].
     fn has_boat_modes(&self) -> bool;
 
     /// The report expected from a boat that has received this command.
@@ -69,11 +69,11 @@ pub trait Codec {
     /// a boat from others.
     fn stop_message(&self) -> Vec<u8>;
 
-    /// Like [`Codec::stop_message`], regardless of who commands the boat, as far as its protocol
+    /// Like [`Codec::stop_message`], regardless of who commands the boat, as far as the protocol
     /// allows.
     fn forced_stop_message(&self) -> Vec<u8>;
 
-    /// Like [`Codec::stop_message`], after an incomplete write by a gateway that died.
+    /// Like [`Codec::stop_message`], after an incomplete write by a gateway that has died.
     fn guard_message(&self) -> Vec<u8> {
         self.stop_message()
     }
@@ -84,7 +84,7 @@ pub trait Codec {
     /// The fault of the mission.
     fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String>;
 
-    /// Continues the upload of a mission; done if there is none.
+    /// Continues the upload of a mission; returns `Done` if there is none.
     fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep;
 
     /// Whether a mission is being uploaded.
@@ -93,9 +93,9 @@ pub trait Codec {
     /// Discards the upload, if any; returns whether there was one. The boat is not notified.
     fn abort_upload(&mut self) -> bool;
 
-    /// When its next own message is due, if any.
+    /// When the next message without a command is due, if any.
     fn due(&self) -> Option<SimTime>;
 
-    /// The counters by name, including those for unknown names received.
+    /// The counters by name, including counters of unknown names received.
     fn counts(&self) -> [Vec<(String, u64)>; 2];
 }

@@ -3,8 +3,8 @@
 //! The boat follows set-points when it is armed and in mode GUIDED; standby is mode HOLD, disarmed.
 //! A boat in any other mode that we did not request is under other control (a remote control, a
 //! ground station, a failsafe of its own), and receives nothing that would take it over. A mode is
-//! requested until the boat shows it once, and never again after the boat has left it: an operator
-//! who takes the boat out of GUIDED keeps it.
+//! requested until the boat shows it once, and never again after the boat has left it, so that an
+//! operator who takes the boat out of GUIDED keeps control.
 
 use super::codec::{Codec, Command, UploadStep, named};
 use super::mavlink_boat::{Asked, Boat, Target};
@@ -30,14 +30,14 @@ use primitives::{SimTime, math};
 
 /// Interval of our heartbeat, s.
 const HEARTBEAT_S: f64 = 1.0;
-/// A mode or arming that the boat does not show is requested again after this time, s.
+/// Time after which a mode or arming that the boat does not show is requested again, s.
 const AGAIN_S: f64 = 0.5;
-/// Below this speed, m/s, a velocity is not sent: its direction would be that of a rounding error.
+/// Minimum speed of a velocity that is sent, m/s: below it the direction would be a rounding error.
 const VELOCITY_MIN_M_S: f64 = 0.01;
-/// The messages that we need from the boat: number, and rate, 1/s.
+/// The messages that we need from the boat: number and rate, 1/s.
 const STREAMS: [(u32, f64); 9] = [
-    // Five times a second instead of once: it shows the gateway that someone has taken over the
-    // boat, which travels two metres in a second.
+    // Five times a second instead of once, so that the gateway notices quickly if someone has taken
+    // over the boat, which travels two metres in a second.
     (HEARTBEAT_DATA::ID, 5.0),
     (GLOBAL_POSITION_INT_DATA::ID, 10.0),
     (ATTITUDE_DATA::ID, 10.0),
@@ -45,18 +45,18 @@ const STREAMS: [(u32, f64); 9] = [
     (SYS_STATUS_DATA::ID, 1.0),
     (SYSTEM_TIME_DATA::ID, 1.0),
     (HOME_POSITION_DATA::ID, 0.5),
-    // The set-points that it follows, to compare with our own.
+    // The set-points that the boat follows, to compare with ours.
     (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
 ];
-/// They are requested again after this time, s: the boat may have restarted.
+/// Interval at which the messages are requested again, s: the boat may have restarted.
 const STREAMS_AGAIN_S: f64 = 10.0;
 
 /// The state of a link.
 #[derive(Clone, Debug)]
 pub struct Mavlink {
     settings: Settings,
-    /// Speeds of throttles, and the highest, m/s.
+    /// Pairs of throttle and speed, including the maximum speed, m/s.
     thrust_map: Vec<(f64, f64)>,
     speed_max_m_s: f64,
     framer: Framer,
@@ -108,8 +108,8 @@ impl Mavlink {
                 take(Report::Home([at.lat_deg, at.lon_deg]));
             }
             MavMessage::MISSION_ACK(ack) if (ack.target_system, ack.target_component) == ours => {
-                // For our system and component: ground stations on the same link upload missions,
-                // too.
+                // Must be for our system and component: ground stations on the same link also
+                // upload missions.
                 self.upload
                     .iter_mut()
                     .for_each(|upload| upload.take_ack(ack.mavtype, now));
@@ -147,8 +147,8 @@ impl Mavlink {
         self.write_arming(true, out);
     }
 
-    /// Requests mode HOLD, disarmed, if the boat is ours: until it shows that, and whenever it is
-    /// driven again.
+    /// Requests mode HOLD, disarmed, if the boat is ours: until the boat shows it, and whenever the
+    /// boat is driven again.
     fn stand_by(&mut self, now: SimTime, out: &mut Vec<u8>) {
         let Some(shown) = self
             .boat
@@ -198,7 +198,7 @@ impl Mavlink {
     }
 
     fn write_mode(&mut self, mode: RoverMode, out: &mut Vec<u8>) {
-        // Of the base mode, only the flag for a custom mode counts.
+        // In the base mode, only the flag for a custom mode matters.
         self.write_command(
             MavCmd::MAV_CMD_DO_SET_MODE,
             [1.0, mode.number() as f32],
@@ -225,8 +225,8 @@ impl Mavlink {
             AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
                 | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE;
         let message = match set_point {
-            // Thrust is a fraction of the boat's cruise speed, ahead positive; the rate of turn is
-            // to starboard.
+            // Thrust is a fraction of the boat's cruise speed, positive ahead; the rate of turn is
+            // positive to starboard.
             SetPoint::Thrust {
                 thrust_pct,
                 difference_pct,
@@ -239,8 +239,8 @@ impl Mavlink {
                     | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE,
                 ..SET_ATTITUDE_TARGET_DATA::default()
             }),
-            // A zero velocity has no direction, and the boat would turn north: it receives the
-            // heading, and zero thrust.
+            // A zero velocity has no direction, and the boat would turn north. Send the heading and
+            // zero thrust instead.
             SetPoint::Speed {
                 heading_deg,
                 speed_m_s,
@@ -292,7 +292,7 @@ impl Codec for Mavlink {
     fn begin_link(&mut self) {
         self.framer.interrupt();
         self.boat.forget(self.settings.boat_system);
-        // The boat may be a different one, or have restarted: earlier requests no longer hold.
+        // The boat may be a different one, or have restarted, so earlier requests no longer hold.
         (self.asked, self.upload) = (None, None);
         (self.heartbeat_due, self.streams_due) = (SimTime::LONG_AGO, SimTime::LONG_AGO);
         self.answers.clear();
@@ -327,8 +327,8 @@ impl Codec for Mavlink {
         }
     }
 
-    /// The messages due without a command: our heartbeat, requests for messages, and answers to the
-    /// boat.
+    /// Writes the messages due without a command: our heartbeat, requests for messages, and replies
+    /// to the boat.
     fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
         for message in std::mem::take(&mut self.answers) {
             self.send(message, out);
@@ -347,8 +347,8 @@ impl Codec for Mavlink {
                 out,
             );
         }
-        // Not before the boat is known: ArduPilot also answers a request sent to everyone, and so
-        // would every other system on the link.
+        // Not before the boat is known: ArduPilot also answers a broadcast request, as would every
+        // other system on the link.
         if self.boat.system.is_some() && now >= self.streams_due {
             self.streams_due = now + SimTime::from_s(STREAMS_AGAIN_S);
             for (id, rate_hz) in STREAMS {
@@ -417,12 +417,12 @@ impl Codec for Mavlink {
         }
     }
 
-    /// The stop message for a boat that is ours; one under other control receives a set-point of
+    /// The stop message for a boat that is ours. A boat under other control receives a set-point of
     /// zero, which it ignores.
     fn stop_message(&self) -> Vec<u8> {
         let mut copy = self.clone();
         let mut out = Vec::new();
-        // The same bytes as long as nothing changes.
+        // The bytes stay the same as long as nothing changes.
         copy.writer = Writer::new(self.settings.system, self.settings.component);
         copy.write_set_point(SetPoint::ZERO, &mut out);
         if copy.boat.mode.is_some() && copy.boat.is_ours(copy.asked.as_ref()) {
@@ -444,7 +444,8 @@ impl Codec for Mavlink {
 
     fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         mission_check::check(mission)?;
-        // The game's missions specify a throttle, like a Surveyor's; ArduPilot's specify a speed.
+        // A mission in the game specifies a throttle, like a Surveyor's; an ArduPilot mission
+        // specifies a speed.
         let speed_m_s = math::interpolate(self.thrust_map.iter().copied(), mission.throttle_pct);
         let speed_m_s = speed_m_s.clamp(0.0, self.speed_max_m_s);
         self.upload = Some(Upload::new(mission, speed_m_s, self.boat.target(), now));
@@ -474,8 +475,8 @@ impl Codec for Mavlink {
         self.upload.take().is_some()
     }
 
-    /// MAVLink needs a message every second even without commands: otherwise a boat may enter a
-    /// failsafe of its own.
+    /// MAVLink needs a message every second even without commands; otherwise a boat may enter its
+    /// own failsafe.
     fn due(&self) -> Option<SimTime> {
         let upload = self.upload.as_ref().map_or(SimTime::NEVER, Upload::due);
         Some(upload.min(self.heartbeat_due))
@@ -498,11 +499,11 @@ impl Codec for Mavlink {
     }
 }
 
-/// The mode in which a boat carries out a task: Rover's, as it is shown, and its name.
+/// The mode in which a boat executes a task: Rover's, as shown, and by name.
 fn mode_of(task: Task) -> (RoverMode, Mode, &'static str) {
     match task {
         Task::StationKeep => (RoverMode::Loiter, Mode::StationKeep, "LOITER"),
-        // The closest match on an ArduPilot boat: it goes home to where it was armed, or to its
+        // The closest equivalent on an ArduPilot boat: it returns to where it was armed, or to its
         // rally point.
         Task::GoToErp => (RoverMode::Rtl, Mode::GoToErp, "RTL"),
         Task::Mission => (RoverMode::Auto, Mode::Waypoint, "AUTO"),
@@ -511,7 +512,7 @@ fn mode_of(task: Task) -> (RoverMode, Mode, &'static str) {
     }
 }
 
-/// The mission item that a boat requests, and from whom.
+/// The mission item that a boat requests, and the addressee of the request.
 #[expect(
     deprecated,
     reason = "ArduPilot asks by MISSION_REQUEST too, and is answered as the specification says"

@@ -12,11 +12,11 @@ use ::mavlink::Message;
 use primitives::SimTime;
 use primitives::frame::Ned;
 
-/// A receiver that has not reported a fix for this long has none, s.
+/// Time without a reported fix after which a receiver has none, s.
 const FIX_TYPE_AGE_MAX_S: f64 = 2.0;
-/// Without ATTITUDE for this long the heading comes from the position message, s.
+/// Time without ATTITUDE after which the heading comes from the position message, s.
 const ATTITUDE_AGE_MAX_S: f64 = 1.0;
-/// The set-point shown by the boat is valid for this long, s: three of its reports.
+/// Lifetime of the set-point shown by the boat, s: three of its reports.
 const TARGET_AGE_MAX_S: f64 = 0.6;
 /// Maximum number of ground stations stored.
 const STATIONS_MAX: usize = 8;
@@ -34,7 +34,7 @@ pub(super) struct Asked {
     pub(super) mode: RoverMode,
     pub(super) is_armed: bool,
     pub(super) at: SimTime,
-    /// Whether the boat has shown it.
+    /// Whether the boat has shown the mode.
     pub(super) is_shown: bool,
 }
 
@@ -50,17 +50,17 @@ impl Asked {
     }
 }
 
-/// The system and component that a message is for.
+/// The system and component that a message addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Target {
     pub(super) system: u8,
     pub(super) component: u8,
 }
 
-/// The contents of its messages.
+/// The data from the boat's messages.
 #[derive(Clone, Debug)]
 pub(super) struct Boat {
-    /// Its system, once that is known.
+    /// The boat's system number, once known.
     pub(super) system: Option<u8>,
     pub(super) mode: Option<ShownMode>,
     /// Messages from other systems and components.
@@ -70,9 +70,9 @@ pub(super) struct Boat {
     position_ms: Option<u32>,
     attitude_at: SimTime,
     has_volts: bool,
-    /// The ordered heading that it shows in GUIDED, degrees, and when it arrived.
+    /// The ordered heading shown in GUIDED (degrees), and when it arrived.
     ordered: Option<(SimTime, f64)>,
-    /// When it last showed that it goes to a position in GUIDED.
+    /// When the boat last showed a destination in GUIDED.
     position_target_at: SimTime,
     texts: StatusTexts,
     /// Other ground stations that were heard: system and component.
@@ -80,7 +80,7 @@ pub(super) struct Boat {
 }
 
 impl Boat {
-    /// The boat of this system; 0 means the first one heard.
+    /// The boat with this system number; 0 means the first boat heard.
     pub(super) fn new(system: u8) -> Boat {
         Boat {
             system: (system != 0).then_some(system),
@@ -104,9 +104,9 @@ impl Boat {
         };
     }
 
-    /// The target of messages for it.
+    /// The target of messages for the boat.
     pub(super) fn target(&self) -> Target {
-        // No target means everyone: a set-point of zero may be for all.
+        // No target means a broadcast: a set-point of zero may be for everyone.
         let system = self.system.unwrap_or(0);
         Target {
             system,
@@ -123,13 +123,14 @@ impl Boat {
         {
             self.system = Some(received.system);
         }
-        // Cameras and gimbals on the boat share its system number and send heartbeats as well.
+        // Cameras and gimbals on the boat share its system number and also send heartbeats.
         let is_its = self.system == Some(received.system) && received.component == AUTOPILOT;
         self.others += u64::from(!is_its);
         is_its
     }
 
-    /// Whether no one else commands it: it is in GUIDED or HOLD, or in the mode that we requested.
+    /// Whether no one else commands the boat: it is in GUIDED or HOLD, or in the mode that we
+    /// requested.
     pub(super) fn is_ours(&self, asked: Option<&Asked>) -> bool {
         self.mode.is_none_or(|shown| {
             matches!(shown.mode, RoverMode::Guided | RoverMode::Hold)
@@ -137,8 +138,8 @@ impl Boat {
         })
     }
 
-    /// Records other senders' set-points for the boat, and other ground stations, if the boat or a
-    /// router passes them on to us.
+    /// Reports other senders' set-points for the boat, and other ground stations, if the boat or a
+    /// router forwards them to us.
     pub(super) fn report_stranger(&mut self, received: &Received, take: &mut dyn FnMut(Report)) {
         let Received {
             system,
@@ -187,8 +188,8 @@ impl Boat {
         self.mode = Some(shown);
         let is_ours = self.is_ours(asked.as_ref());
         if !is_ours {
-            // Another operator took it: our earlier request must not count when the boat happens to
-            // be in that mode later.
+            // Another operator took the boat: our earlier request must not count if the boat
+            // happens to enter that mode later.
             *asked = None;
         }
         if let Some(asked) = asked {
@@ -196,10 +197,10 @@ impl Boat {
         }
         let is_fresh = |at: SimTime| (now - at).as_s() <= TARGET_AGE_MAX_S;
         let mode = match shown.mode {
-            // In any mode: a boat that is not armed does not move.
+            // In any mode, since a boat that is not armed does not move.
             _ if is_ours && !is_armed => Mode::Standby,
             RoverMode::Hold => Mode::Standby,
-            // We never send it a position.
+            // We never send the boat a position.
             RoverMode::Guided if is_fresh(self.position_target_at) => Mode::Waypoint,
             RoverMode::Guided => Mode::Speed,
             RoverMode::Loiter => Mode::StationKeep,
@@ -247,14 +248,14 @@ impl Boat {
                 is_armed: true,
             });
         match message {
-            // The ordered heading, from version 4.7 on; before that it is 0, except for the bearing
-            // of a position.
+            // The ordered heading, from version 4.7 on; in earlier versions 0, except for the
+            // bearing to a position.
             MavMessage::NAV_CONTROLLER_OUTPUT(shown) if is_guided => {
                 self.ordered = Some((now, f64::from(shown.nav_bearing)));
             }
-            // Rover sends it only for positions, and when it keeps station for lack of a set-point.
+            // Rover sends it only for positions, and when it keeps station without a set-point.
             MavMessage::POSITION_TARGET_GLOBAL_INT(_) if is_guided => self.position_target_at = now,
-            // None of it is ours before it shows that it is armed in GUIDED.
+            // Nothing it shows is ours until it shows that it is armed in GUIDED.
             MavMessage::NAV_CONTROLLER_OUTPUT(_) | MavMessage::POSITION_TARGET_GLOBAL_INT(_) => {
                 (self.ordered, self.position_target_at) = (None, SimTime::LONG_AGO);
             }
@@ -310,7 +311,8 @@ impl Boat {
                 let (_, time) = date_and_time(time.time_unix_usec.saturating_mul(1000));
                 take(Report::Clock(time));
             }
-            // Texts below a warning are sent all the time, and would hide important ones.
+            // Messages below the severity of a warning are sent all the time, and would hide
+            // important ones.
             MavMessage::STATUSTEXT(status)
                 if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 =>
             {
@@ -320,7 +322,7 @@ impl Boat {
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
                 command, result, ..
             }) => {
-                // Only for commands that we send ourselves: an answer goes to everyone on the link.
+                // Only for commands that we send ourselves: a reply goes to everyone on the link.
                 let is_orderly = matches!(
                     command,
                     MavCmd::MAV_CMD_DO_SET_MODE
@@ -355,7 +357,7 @@ impl Boat {
             hdg,
             ..
         } = *position;
-        // Repetitions are not news.
+        // Repetitions carry no news.
         // A router may deliver a message by two routes.
         if self.position_ms.replace(time_boot_ms) == Some(time_boot_ms) {
             return;
@@ -372,7 +374,7 @@ impl Boat {
             north: 0.01 * f64::from(vx),
             east: 0.01 * f64::from(vy),
         }));
-        // The position is an estimate that continues without a receiver: its fix shows its quality.
+        // The position is an estimate that continues without a receiver; the fix shows its quality.
         let fix = self
             .fix
             .filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
@@ -390,7 +392,7 @@ impl Boat {
     }
 }
 
-/// ArduPilot on a boat, or on a rover, which runs the same program.
+/// Whether this is ArduPilot on a boat, or on a rover, which runs the same firmware.
 fn is_boat(heartbeat: &HEARTBEAT_DATA) -> bool {
     let is_vehicle = matches!(
         heartbeat.mavtype,
@@ -403,7 +405,7 @@ fn is_boat(heartbeat: &HEARTBEAT_DATA) -> bool {
 fn fix(gps: &GPS_RAW_INT_DATA) -> Fix {
     Fix {
         quality: Some(quality(gps)),
-        // The largest values mean that it is unknown.
+        // The maximum values mean unknown.
         hdop: (gps.eph != u16::MAX).then(|| 0.01 * f64::from(gps.eph)),
         satellites: (gps.satellites_visible != u8::MAX).then_some(gps.satellites_visible),
         ..Fix::default()
@@ -420,7 +422,7 @@ fn quality(gps: &GPS_RAW_INT_DATA) -> FixQuality {
         GpsFixType::GPS_FIX_TYPE_DGPS | GpsFixType::GPS_FIX_TYPE_PPP => 2,
         GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,
         GpsFixType::GPS_FIX_TYPE_RTK_FIXED => 4,
-        // A base station knows its position because someone entered it.
+        // A base station knows its position only because someone entered it.
         GpsFixType::GPS_FIX_TYPE_STATIC => 7,
     })
 }

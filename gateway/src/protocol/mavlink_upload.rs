@@ -1,5 +1,5 @@
 //! The upload of a mission by MAVLink: the boat's home is set and confirmed, then the boat requests
-//! one item after the other.
+//! the items one by one.
 
 use super::codec::UploadStep;
 use super::mavlink_boat::Target;
@@ -13,11 +13,11 @@ use ::mavlink::MessageData;
 use messages::external::Mission;
 use primitives::SimTime;
 
-/// An unanswered message is sent again after this time, s, and this many times in all.
+/// Time after which an unanswered message is sent again (s), and the maximum number of attempts.
 const AGAIN_S: f64 = 1.0;
 const TRIES_MAX: u32 = 5;
-/// A home within this distance of the recovery point is the one that was set, 1e-7 degrees: one
-/// metre.
+/// Maximum distance of a home from the recovery point for it to be the one that was set, 1e-7
+/// degrees: one metre.
 const SAME_E7: u32 = 90;
 
 /// The upload.
@@ -31,21 +31,21 @@ pub(super) struct Upload {
     due: SimTime,
 }
 
-/// The next step of the boat.
+/// The boat's next step.
 #[derive(Clone, Debug, PartialEq)]
 enum Phase {
-    /// Report the home that it was sent.
+    /// The boat must report the home that it was sent.
     Home,
-    /// Request items, and accept them.
+    /// The boat requests items, and then accepts them.
     Items,
-    /// None: it has accepted everything.
+    /// None: the boat has accepted everything.
     Done,
-    /// None: it has refused the mission, for this reason.
+    /// None: the boat has refused the mission, for the given reason.
     Refused(String),
 }
 
 impl Upload {
-    /// The items of a mission at this speed, m/s. The first is the home, as in ArduPilot's
+    /// The items of a mission at this speed (m/s). The first is the home, as in ArduPilot's
     /// numbering.
     pub(super) fn new(mission: &Mission, speed_m_s: f64, target: Target, now: SimTime) -> Upload {
         let item = |command: MavCmd, [lat_deg, lon_deg]: [f64; 2]| MISSION_ITEM_INT_DATA {
@@ -58,7 +58,7 @@ impl Upload {
             autocontinue: 1,
             ..MISSION_ITEM_INT_DATA::default()
         };
-        // Speed over the ground, and no throttle.
+        // Speed over the ground, without a throttle.
         let speed = MISSION_ITEM_INT_DATA {
             param1: 1.0,
             param2: speed_m_s as f32,
@@ -117,13 +117,13 @@ impl Upload {
         UploadStep::Sent
     }
 
-    /// Handles the home that the boat reports.
+    /// Handles the home reported by the boat.
     pub(super) fn take_home(&mut self, (lat_e7, lon_e7): (i32, i32), now: SimTime) {
         let is_near =
             lat_e7.abs_diff(self.home.0) <= SAME_E7 && lon_e7.abs_diff(self.home.1) <= SAME_E7;
         if self.phase == Phase::Home && is_near {
-            // RTL goes to the home, so a boat that has not accepted it must not get a mission with
-            // that recovery point.
+            // RTL goes to the home, so a boat that has not accepted our home must not get a mission
+            // with that recovery point.
             (self.phase, self.tries, self.due) = (Phase::Items, 0, now);
         }
     }
@@ -134,16 +134,15 @@ impl Upload {
             .items
             .get(usize::from(seq))
             .filter(|_| self.phase == Phase::Items)?;
-        // Each request shows that the upload continues, so the attempts are counted again from
-        // zero.
+        // Each request shows that the upload is progressing, so restart the count of attempts.
         (self.tries, self.due) = (1, now + SimTime::from_s(AGAIN_S));
         Some(MavMessage::MISSION_ITEM_INT(item.clone()))
     }
 
-    /// Handles the boat's acceptance or refusal of the mission.
+    /// Handles the boat's acceptance or rejection of the mission.
     pub(super) fn take_ack(&mut self, result: MavMissionResult, now: SimTime) {
-        // ArduPilot sends this for an item that arrives twice because it was slow the first time,
-        // and continues.
+        // ArduPilot sends this for an item that arrives twice because the first copy was slow, and
+        // continues.
         if self.phase == Phase::Items && result != MavMissionResult::MAV_MISSION_INVALID_SEQUENCE {
             let is_taken = result == MavMissionResult::MAV_MISSION_ACCEPTED;
             self.phase = if is_taken {

@@ -3,9 +3,9 @@
 use messages::external::Mission;
 
 /// Maximum number of waypoints of a mission.
-// At one line a second such an upload takes minutes; a boat's own limit is not published.
+// At one line a second such an upload takes minutes; the limit of a boat is not published.
 const WAYPOINTS_MAX: usize = 200;
-/// Maximum throttle that other drivers of a Surveyor send, per cent.
+/// Maximum throttle sent by other drivers of a Surveyor, per cent.
 const THROTTLE_MAX_PCT: f64 = 70.0;
 
 /// Checks whether a mission can be sent to a boat.

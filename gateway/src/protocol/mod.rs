@@ -1,7 +1,7 @@
-//! The protocol of a boat: its bytes become [`Report`]s, and a [`Command`] becomes bytes.
+//! The protocol of a boat: converts its bytes to [`Report`]s, and [`Command`]s to bytes.
 //!
-//! Nothing here decides whether a boat may move: the supervisor does, and a bridge sends what
-//! follows from that.
+//! This module does not decide whether a boat may move: the supervisor does, and a bridge sends the
+//! result.
 
 mod codec;
 mod mavlink;
@@ -30,7 +30,7 @@ pub enum Protocol {
 }
 
 impl Protocol {
-    /// The protocol of a boat that this gateway drives.
+    /// The protocol of the boat that a gateway drives.
     pub fn new(gateway: &Gateway) -> Protocol {
         match gateway.protocol {
             BoatProtocol::Surveyor => {

@@ -1,4 +1,4 @@
-//! The reports of boats, for all protocols.
+//! The reports of boats, common to all protocols.
 
 use crate::nmea::{FixQuality, Mode, Operator, TimeOfDay};
 use primitives::LatLon;
@@ -7,7 +7,7 @@ use primitives::frame::Ned;
 /// A report from a boat.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Report {
-    /// A fix of its receiver.
+    /// A fix from its receiver.
     Fix(Fix),
     /// Velocity over the ground, m/s.
     Velocity(Ned),
@@ -19,17 +19,17 @@ pub enum Report {
     Clock(TimeOfDay),
     /// Its mode, and who commands it.
     Control(ControlReport),
-    /// Another sender's set-point for it was received.
+    /// A set-point for it from another sender was received.
     ForeignOrder,
-    /// Another ground station was heard for the first time: people are notified.
+    /// Another ground station was heard for the first time; operators are notified.
     Station(String),
     /// Its battery and consumers.
     Power(Power),
-    /// Its present error; `None` means no error.
+    /// Its current error; `None` means no error.
     Error(Option<String>),
-    /// A single message that people should know.
+    /// A single message for operators.
     Notice(String),
-    /// The position of its home, to which it goes for recovery: latitude and longitude, degrees.
+    /// The position of its home, where it goes for recovery: latitude and longitude, degrees.
     Home([f64; 2]),
 }
 
@@ -49,8 +49,7 @@ pub struct Power {
 /// A fix of the receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fix {
-    /// Time from the receiver. A fix with the same time and position as the previous one is not
-    /// new.
+    /// The receiver's time. A fix with the same time and position as the previous one is not new.
     pub time: Option<TimeOfDay>,
     /// The position; `None` if the receiver does not know it.
     pub at: Option<LatLon>,
@@ -78,16 +77,16 @@ pub struct Heading {
 pub enum North {
     /// True north.
     True,
-    /// That of the boat's compass: the gateway's file says which one that is.
+    /// That of the boat's compass, which the gateway file states.
     Compass,
 }
 
 /// A boat's mode, and who commands it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlReport {
-    /// The command that it follows, as reported.
+    /// The command that the boat follows, as it reports.
     pub shown: Shown,
-    /// Who commands it, if reported.
+    /// Who commands the boat, if reported.
     pub operator: Option<Operator>,
 }
 

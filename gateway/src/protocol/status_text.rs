@@ -1,19 +1,19 @@
-//! Reassembles STATUSTEXT messages: a text of more than 50 characters arrives in chunks.
+//! Reassembles STATUSTEXT messages: a message of more than 50 characters arrives in chunks.
 
 use crate::mavlink::dialect::STATUSTEXT_DATA;
 use primitives::SimTime;
 
-/// A text whose next chunk is this late is shown without it, s.
+/// Maximum delay of the next chunk before a message is shown without it, s.
 const CHUNK_AGE_MAX_S: f64 = 1.0;
-/// Maximum bytes of a text: ArduPilot's has 256, and a stranger must not be able to fill the
-/// memory.
+/// Maximum bytes of a message: ArduPilot's have up to 256, and a stranger must not be able to
+/// exhaust the memory.
 const TEXT_MAX: usize = 1000;
-/// Maximum number of unfinished texts.
+/// Maximum number of incomplete messages.
 const UNFINISHED_MAX: usize = 4;
 /// The placeholder for lost chunks.
 const LOST: &[u8] = "…".as_bytes();
 
-/// The texts with missing chunks.
+/// The messages with missing chunks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusTexts {
     unfinished: Vec<Unfinished>,
@@ -28,7 +28,7 @@ struct Unfinished {
 }
 
 impl StatusTexts {
-    /// Accepts a message; calls `say` with each text that it completes.
+    /// Accepts a chunk; calls `say` with each message that it completes.
     pub(super) fn take(
         &mut self,
         now: SimTime,
@@ -38,12 +38,12 @@ impl StatusTexts {
         let letters = status.text.iter().take_while(|letter| **letter != 0);
         let capacity = status.text.len();
         let letters: Vec<u8> = letters.copied().collect();
-        // MAVLink 1 has neither field: the text is complete.
+        // MAVLink 1 has neither field: the message is complete.
         if status.id == 0 {
             return say(in_words(&letters));
         }
         let place = self.unfinished.iter().position(|text| text.id == status.id);
-        // A repeated chunk number starts another text: numbers are reused.
+        // A repeated chunk number starts a new message, since numbers are reused.
         let (mut text, again) = match place.map(|place| self.unfinished.remove(place)) {
             Some(text) if text.next_chunk <= status.chunk_seq => (text, None),
             other => (
@@ -75,7 +75,7 @@ impl StatusTexts {
         self.unfinished.push(text);
     }
 
-    /// Calls `say` with each text whose next chunk is overdue.
+    /// Calls `say` with each message whose next chunk is overdue.
     pub(super) fn take_overdue(&mut self, now: SimTime, say: &mut dyn FnMut(String)) {
         let is_overdue = |text: &mut Unfinished| (now - text.at).as_s() > CHUNK_AGE_MAX_S;
         self.unfinished
@@ -90,7 +90,7 @@ impl Unfinished {
     }
 }
 
-/// Joined before decoding, because a chunk may end within a character.
+/// Join before decoding, because a chunk may end within a character.
 fn in_words(letters: &[u8]) -> String {
     String::from_utf8_lossy(letters).trim().to_owned()
 }
@@ -101,7 +101,7 @@ mod tests {
 
     const LONG: &str = "PreArm: Compass not calibrated and the accelerometers are inconsistent at 12° and 50°, please wait a while";
 
-    /// The texts shown for these chunks, which arrive every 0.1 s, and 2 s later.
+    /// The messages shown for these chunks, which arrive every 0.1 s, and 2 s later.
     fn said(chunks: &[(u16, u8, &[u8])]) -> Vec<String> {
         let mut texts = StatusTexts::default();
         let mut said = vec![];
@@ -157,7 +157,7 @@ mod tests {
                 vec![(7, 0, a), (7, 0, c)],
                 vec![part(&[a, LOST].concat()), part(c)],
             ),
-            // Exactly 50 characters, followed by the empty chunk that ends it.
+            // Exactly 50 characters, followed by the empty chunk that marks the end.
             (vec![(7, 0, full), (7, 1, b"")], vec![part(full)]),
         ] {
             assert_eq!(said(&chunks), want);

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, VecDeque};
 /// Maximum number of unknown sentence names stored.
 const UNKNOWN_MAX: usize = 64;
 
-/// A mission that is being uploaded: one line after the other, with pauses.
+/// A mission being uploaded, line by line with pauses.
 #[derive(Clone, Debug)]
 struct Upload {
     /// The lines still to be sent.
@@ -64,7 +64,7 @@ impl Codec for Surveyor {
         framer.push(bytes, &mut |body| match Sentence::parse(body) {
             Ok(sentence) => report(&sentence, take),
             Err(ParseError::Unknown { address }) => {
-                // Names arrive over a wire that may carry noise: without a limit they would fill
+                // Names arrive over a link that may carry noise: without a limit they would exhaust
                 // the memory.
                 let room = unknown.len() < UNKNOWN_MAX;
                 let name = if room || unknown.contains_key(&address) {
@@ -82,7 +82,7 @@ impl Codec for Surveyor {
         write(command, out);
     }
 
-    /// A Surveyor sends everything unasked and needs no heartbeat.
+    /// A Surveyor sends everything without request and needs no heartbeat.
     fn keep_up(&mut self, _: SimTime, _: &mut Vec<u8>) {}
 
     fn has_boat_modes(&self) -> bool {
@@ -120,12 +120,12 @@ impl Codec for Surveyor {
         bytes
     }
 
-    /// A Surveyor follows only the operator in control, and no sentence of ours changes that.
+    /// A Surveyor follows only the operator in control, and none of our sentences changes that.
     fn forced_stop_message(&self) -> Vec<u8> {
         self.stop_message()
     }
 
-    /// An incomplete sentence is ended first.
+    /// Ends an incomplete sentence first.
     fn guard_message(&self) -> Vec<u8> {
         [b"\r\n".to_vec(), self.stop_message()].concat()
     }
@@ -313,7 +313,7 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
 
 fn report_velocity(course_deg: Option<f64>, speed_kn: Option<f64>, take: &mut dyn FnMut(Report)) {
     match (course_deg, speed_kn) {
-        // Receivers leave the course of a boat at rest blank; it is not north.
+        // Receivers leave the course of a boat at rest blank, which does not mean north.
         (None, Some(speed_kn)) if speed_kn < 0.5 => take(Report::Velocity(Ned::default())),
         (Some(course_deg), Some(speed_kn)) => take(Report::Velocity(
             Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN),
@@ -322,7 +322,7 @@ fn report_velocity(course_deg: Option<f64>, speed_kn: Option<f64>, take: &mut dy
     }
 }
 
-/// `PSEAC` with these numbers in its second to fourth field.
+/// `PSEAC` with these numbers in its second to fourth fields.
 fn pseac(mode: Mode, numbers: [Option<f64>; 3]) -> nmea::Command {
     let [heading_deg, thrust, difference] = numbers;
     nmea::Command {

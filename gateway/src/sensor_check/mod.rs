@@ -20,9 +20,9 @@ use primitives::angle::{compass_deg_from_rad, wrap_pi};
 use primitives::frame::LatLon;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Compass and true heading closer than this are the same, rad.
+/// Maximum difference between compass and true heading for them to be equal, rad.
 const SAME_HEADING_RAD: f64 = 0.02;
-/// Minimum speed at which the course shows the heading, m/s.
+/// Minimum speed at which the course indicates the heading, m/s.
 const COURSE_MIN_M_S: f64 = 1.0;
 /// Maximum number of positions stored.
 const FIXES_MAX: usize = 20_000;
@@ -31,16 +31,16 @@ const NAMES_MAX: usize = 64;
 /// Maximum number of vehicles listed if none of them is the boat.
 const HEARD_MAX: usize = 8;
 
-/// Allowed range of the boat's clock error relative to this machine's, s: fixes arrive a moment
-/// after their time.
+/// Allowed error of the boat's clock relative to this machine's, s: fixes arrive shortly after
+/// their time.
 // An offset of half a minute is not latency: one of the clocks is wrong, and recordings cannot be
 // compared.
 const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
-/// The days of 1024 weeks, less one for the time of day.
+/// The days in 1024 weeks, less one for the time of day.
 const GPS_WEEKS_DAYS: i64 = 7167;
 
-/// A moment by the check's clock and by the host's. The two belong together: a gap between them
-/// would look like a fault of the boat's clock.
+/// A moment by both the check's clock and the host's clock. Reading them separately would look like
+/// a fault of the boat's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostTime {
     /// The moment, by the check's clock.
@@ -62,11 +62,11 @@ impl HostTime {
 pub struct Received {
     /// The number received.
     pub count: u64,
-    /// The number of these that could not be read; all of them if the sentence is unknown.
+    /// The number of unreadable ones; all of them if the name is unknown.
     pub unreadable: u64,
-    /// Why the first of these could not be read, unless its name is unknown.
+    /// Why the first unreadable one could not be read, unless its name is unknown.
     pub why_unreadable: Option<String>,
-    /// When the first and the last arrived.
+    /// When the first and the last one arrived.
     pub between: Option<(SimTime, SimTime)>,
     /// The last one: a sentence as received, or the fields of a message.
     pub last: String,
@@ -103,11 +103,11 @@ pub struct SensorCheck {
     pub received: BTreeMap<String, Received>,
     /// Number of bytes received.
     bytes: usize,
-    /// Whether lines of the received bytes begin as NMEA sentences do.
+    /// Whether lines of the received bytes begin like NMEA sentences.
     has_sentences: bool,
     /// The data that the gateway could use.
     usable: BTreeMap<Usable, Received>,
-    /// The MAVLink vehicles whose heartbeats were received, as text.
+    /// The MAVLink vehicles whose heartbeats were received, as strings.
     heard: BTreeSet<String>,
     protocol: Protocol,
     /// The last fix with a reported quality.
@@ -162,10 +162,10 @@ impl SensorCheck {
         }
     }
 
-    /// Accepts bytes in any split.
+    /// Accepts bytes, however they are split.
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
         // A separate framer counts by name. The reports come from the gateway's own codec, so that
-        // the check judges what the gateway would use.
+        // the check judges the data that the gateway would use.
         self.bytes += bytes.len();
         self.has_sentences |=
             bytes.starts_with(b"$") || bytes.windows(3).any(|part| part == b"\r\n$");
@@ -190,7 +190,7 @@ impl SensorCheck {
         known
     }
 
-    /// A true heading for comparison, degrees: as reported, or the course of a boat that makes way.
+    /// A true heading for comparison, degrees: as reported, or the course if the boat makes way.
     pub fn true_deg(&self) -> Option<f64> {
         let course = || {
             self.track
@@ -205,7 +205,7 @@ impl SensorCheck {
         self.compass_deg.or(self.true_deg)
     }
 
-    /// How far the boat's time of day is behind the host's, s.
+    /// How far the boat's clock is behind the host's, s.
     pub(crate) fn clock_behind_s(&self, host: HostTime) -> Option<f64> {
         self.clock
             .map(|(came, time)| date_and_time(host.utc_ns_at(came)).1.since_s(time))
@@ -245,7 +245,7 @@ impl SensorCheck {
         off.map(|behind_s| format!("{}: one of the two is wrong", fixes_in_words(behind_s)))
     }
 
-    /// The boat's reports as text.
+    /// The boat's reports as strings.
     pub fn findings(&self, host: HostTime) -> Vec<String> {
         let mut found = Vec::new();
         if let Some(Fix {
@@ -288,7 +288,7 @@ impl SensorCheck {
         found
     }
 
-    /// A mode by its name, and by its letter if it has one.
+    /// The name of a mode, with its letter if it has one.
     pub(crate) fn mode_in_words(&self, mode: Mode) -> String {
         match self.framer {
             Framer::Nmea(_) => format!("{} ({mode:?})", mode.letter()),
@@ -296,7 +296,7 @@ impl SensorCheck {
         }
     }
 
-    /// Its headings as text.
+    /// The headings as a string.
     pub(crate) fn heading(&self) -> Option<String> {
         let Some(compass_deg) = self.compass_deg else {
             return self
@@ -319,11 +319,11 @@ impl SensorCheck {
         })
     }
 
-    /// The data missing for driving the boat.
+    /// The data missing to drive the boat.
     pub fn missing(&self) -> Vec<String> {
         let mut missing = self.unmet();
         if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)
-            // All data may be there, but a boat under other control follows nothing that we send.
+            // All data may be present, but a boat under other control follows nothing that we send.
             && operator != Operator::Secondary
         {
             missing.push(match self.framer {
@@ -342,14 +342,14 @@ impl SensorCheck {
         missing
     }
 
-    /// The quality of the last fix if it is not a fix: a receiver without one still sends its
+    /// The quality of the last fix if it means no fix: a receiver without a fix still sends its
     /// sentences at the full rate.
     fn no_fix(&self) -> Option<FixQuality> {
         let Fix { at, quality, .. } = self.fix?;
         quality.filter(|quality| at.is_none() || !quality.is_fix())
     }
 
-    /// What was received if none of it could be read, with the reason.
+    /// A description of the received data if none of it could be read, with the reason.
     pub fn unread(&self) -> String {
         let lines = match &self.framer {
             Framer::Nmea(framer) => framer.rejected().map(|last| {
@@ -436,7 +436,7 @@ impl SensorCheck {
         }
     }
 
-    /// Records data in a form that the gateway can use.
+    /// Records data that the gateway can use.
     fn note_usable(&mut self, now: SimTime, report: &Report) {
         let usable = match report {
             Report::Fix(Fix {
@@ -468,8 +468,8 @@ impl SensorCheck {
             Report::Fix(fix) if fix.quality.is_some() => {
                 if let Some(at) = fix.at
                     && fix.quality.is_some_and(FixQuality::is_fix)
-                    // The first ones are kept: their scatter is judged over the time from the first
-                    // to the last.
+                    // Keep the first ones: the scatter is judged over the time from the first to
+                    // the last.
                     && self.fixes.len() < FIXES_MAX
                 {
                     self.fixes.push((now, at));
@@ -521,7 +521,7 @@ fn fixes_in_words(behind_s: f64) -> String {
     )
 }
 
-/// Records received data: its text, and why it could not be read.
+/// Records received data: the message, and why it could not be read.
 fn note(
     received: &mut BTreeMap<String, Received>,
     now: SimTime,

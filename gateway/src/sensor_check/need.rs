@@ -1,14 +1,14 @@
-//! The data needed to drive a boat, and why it is missing.
+//! The data needed to drive a boat, and why some of it is missing.
 
 use super::{Framer, Received, SensorCheck};
 
-/// Minimum rate of data for driving a boat, 1/s: data sent once a second may arrive a little late.
+/// Minimum rate of data to drive a boat, 1/s: data sent once a second may arrive a little late.
 const RATE_MIN_HZ: f64 = 0.9;
 
 /// Data that a boat must report, in a form that the gateway can use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Usable {
-    /// A new position of a fix.
+    /// A new position from a fix.
     Position,
     /// A fix, not only an estimate.
     Quality,
@@ -20,7 +20,7 @@ pub(super) enum Usable {
     Voltage,
 }
 
-/// One need: the data, the sentences or messages that carry it, and the consequence without it.
+/// One need: the data, the sentences or messages that carry it, and the consequence of its absence.
 struct Need {
     usable: Usable,
     what: &'static str,
@@ -110,7 +110,7 @@ impl SensorCheck {
         needs.iter().filter_map(|need| self.lacks(need)).collect()
     }
 
-    /// Judged by what the gateway could use, not by names: a sentence may be unreadable or empty.
+    /// Whether usable data is missing, regardless of names: a sentence may be unreadable or empty.
     fn lacks(&self, need: &Need) -> Option<String> {
         let Need {
             usable,
@@ -126,7 +126,7 @@ impl SensorCheck {
         if rate_hz >= RATE_MIN_HZ {
             return None;
         }
-        // By the ending, because talkers differ (GPGGA, GNGGA).
+        // Match the ending, because talkers differ (GPGGA, GNGGA).
         let named = self
             .received
             .iter()

@@ -1,4 +1,4 @@
-//! The sensor check: what is missing, and why.
+//! The sensor check: missing data, and the reasons.
 
 use super::*;
 use crate::nmea::with_checksum;
@@ -8,19 +8,19 @@ const TELEMETRY: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5
     $PSEAD,T,58.7,20,-10,,T,2,1*7A\r\n\
     $PTQM0,1*35\r\n";
 
-/// Ten times these sentences; the time of a GGA advances with each.
+/// These sentences ten times; the time of a GGA advances each time.
 fn checked(text: &str, hz: f64) -> SensorCheck {
     let mut check = SensorCheck::new(&crate::config::default_gateway());
     for i in 0..10 {
         let text = text.replace("150502.00", &format!("150502.{i}0"));
-        // Time of day is the only thing that changes, by one digit.
+        // Only the time of day changes, by one digit.
         let text = text.replace("M,,*62", &format!("M,,*{:02X}", 0x62 ^ i));
         check.receive(SimTime::from_s(f64::from(i) / hz), text.as_bytes());
     }
     check
 }
 
-/// 15:05:03.30 on this day of November 2026, at the moment 0.
+/// 15:05:03.30 on this day of November 2026, at time 0.
 fn host(day: u64) -> HostTime {
     HostTime {
         now: SimTime::ZERO,

@@ -1,4 +1,4 @@
-//! The cause of a failsafe or of a refusal to arm, with its texts for operators.
+//! The cause of a failsafe or of a refusal to arm, with messages for operators.
 
 use super::{State, Task};
 use crate::nmea::FixQuality;
@@ -32,7 +32,7 @@ pub enum Cause {
         "no recovery point inside the geofence that this gateway uploaded and the boat confirmed"
     )]
     NoRecoveryPoint,
-    /// The gateway was not running for this long, s, and its guard may have stopped the boat.
+    /// The gateway was not running for this time (s), and its guard may have stopped the boat.
     #[error("the gateway hung for {0:.1} s, and its guard may have stopped the boat")]
     Hung(f64),
     /// The link broke.
@@ -49,13 +49,13 @@ pub enum ControlFault {
     /// The boat no longer reported who commands it.
     #[error("the boat no longer reports who commands it")]
     Unknown,
-    /// The boat did not enter the mode that it was sent; it reported this one.
+    /// The boat did not enter the mode sent; it reported this one.
     #[error("the boat does not follow its commands: it is in mode {0}")]
     Disobeyed(char),
     /// The boat still echoes an outdated command: it transmits but does not listen.
     #[error("the boat does not follow its commands: it still shows an older command")]
     Deaf,
-    /// The boat echoes a command that we have not sent.
+    /// The boat echoes a command that we did not send.
     #[error("the boat receives orders that are not ours: another gateway may be active")]
     ForeignOrders,
 }
@@ -90,16 +90,16 @@ pub enum NavFault {
     /// The position jumped this far, m.
     #[error("the position jumped by {0:.0} m")]
     Jump(f64),
-    /// The position has not changed in any digit for this long while the boat was driven, s.
+    /// Time without a change in any digit of the position while the boat was driven, s.
     #[error("the position has not changed for {0:.1} s under thrust")]
     Frozen(f64),
-    /// The compass has not changed in any digit while the course turned by this much, degrees.
+    /// Turn of the course without a change in any digit of the compass, degrees.
     #[error("the compass reading did not change while the course changed by {0:.0} degrees")]
     CompassFrozen(f64),
-    /// The compass deviates by this much from the course over ground on several headings, degrees.
+    /// Deviation of the compass from the course over ground on several headings, degrees.
     #[error("the compass is off by {:.0} degrees, judged by the course over the ground", .0.abs())]
     CompassOff(f64),
-    /// The reported speed is below the one computed from positions, which is this, m/s.
+    /// The reported speed is below the speed computed from positions (m/s).
     #[error("the reported speed is lower than the speed implied by its positions, {0:.1} m/s")]
     SpeedTooLow(f64),
 }
@@ -108,8 +108,8 @@ impl Cause {
     /// Whether the boat still receives commands, knows its position and heading, and responds to
     /// thrust.
     pub(crate) fn leaves_control(self) -> bool {
-        // Only for these may a file name a task after a failsafe. A table of every cause with every
-        // action would let a boat keep station on a lost fix.
+        // Only for these causes may a file choose a task after a failsafe. A table of every cause
+        // and action would let a boat keep station on a lost fix.
         matches!(
             self,
             Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_)
@@ -125,7 +125,7 @@ impl Cause {
         }
     }
 
-    /// The condition that is missing for arming, as text.
+    /// The condition that is missing for arming, as a string.
     pub(crate) fn missing(self) -> String {
         match self {
             Cause::Hung(_) => "a gateway that does not hang".to_owned(),
@@ -150,7 +150,7 @@ impl Cause {
     }
 }
 
-/// The text for PSEAD's operator number.
+/// The name for PSEAD's operator number.
 fn operator(number: u8) -> String {
     match number {
         1 => "the primary operator".to_owned(),

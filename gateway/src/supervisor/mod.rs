@@ -19,12 +19,12 @@
 //! ```
 //!
 //! *Ready* means: link up, control granted, navigation sound, inside the geofence, battery not low,
-//! order fresh. *Fit* is the same without an order. Only in `Armed` do we send anything that moves
+//! order fresh. *Fit* is the same without the order. Only in `Armed` do we send anything that moves
 //! the boat, and only while it is ready in this very step and no other boat is in the way. After a
-//! failsafe the boat stops. Its own controller takes over instead if the gateway's file says so for
+//! failsafe the boat stops, unless the gateway file assigns a task of the boat's own controller to
 //! that cause and nothing that the task needs has failed. The state machine has no clock:
-//! `Conditions` state what is fresh, sound or granted now, so that a test can try every state
-//! with every input.
+//! `Conditions` state what is fresh, sound or granted now, so that a test can try every state with
+//! every input.
 
 mod cause;
 
@@ -35,19 +35,19 @@ use crate::thrust_check::ThrustFault;
 use messages::external::BoatMode;
 use thiserror::Error;
 
-/// The present conditions.
+/// The current conditions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conditions {
     /// Whether bytes can reach the boat.
     pub(crate) link: bool,
-    /// How long the gateway itself was not running until now, s, if its guard may have stopped the
-    /// boat in the meantime.
+    /// How long the gateway was not running until now (s), if its guard may have stopped the boat
+    /// meanwhile.
     pub(crate) hung_s: Option<f64>,
-    /// Why the boat is not commanded by this gateway alone, if so.
+    /// Why this gateway is not the only one commanding the boat, if so.
     pub(crate) control: Option<ControlFault>,
     /// The navigation fault, if any.
     pub(crate) nav: Option<NavFault>,
-    /// How the boat fails to respond to its orders, if it does.
+    /// The boat's failure to respond to its orders, if any.
     pub(crate) thrust: Option<ThrustFault>,
     /// Whether the boat has a recovery point that we uploaded and that is inside the geofence.
     pub(crate) recovery_point: bool,
@@ -59,7 +59,7 @@ pub(crate) struct Conditions {
     pub(crate) blocked: bool,
     /// Whether there is a valid order within its time to live.
     pub(crate) order_fresh: bool,
-    /// Whether a boat that stopped for lack of a fresh order may arm itself again.
+    /// Whether a boat that stopped for lack of a fresh order may rearm itself.
     pub(crate) may_rearm: bool,
 }
 
@@ -113,7 +113,7 @@ pub enum Task {
     GoToErp,
     /// Run the uploaded mission.
     Mission,
-    /// Run another mode of the boat.
+    /// Run a different mode of the boat.
     Mode(BoatMode),
 }
 
@@ -137,7 +137,7 @@ pub enum State {
     EStopped,
 }
 
-/// What to send the boat now.
+/// The action to send the boat now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
     /// Standby; after thrust, zero thrust comes first.
@@ -156,7 +156,7 @@ pub(crate) enum Refusal {
     /// These conditions are missing.
     #[error("missing: {}", .0.iter().map(|cause| cause.missing()).collect::<Vec<_>>().join("; "))]
     NotReady(Vec<Cause>),
-    /// An E-stop of these boats is in force.
+    /// An E-stop for these boats is in force.
     #[error("an E-stop of {0} is in force: release it first")]
     EStopped(&'static str),
 }
@@ -178,15 +178,15 @@ pub(crate) struct Supervisor {
     state: State,
     /// E-stops in force: boat, fleet.
     stops: [bool; 2],
-    /// Whether to arm once without a request, as soon as the boat is ready.
+    /// Whether the boat arms once without a request, as soon as it is ready.
     arms_itself: bool,
     actions: FailsafeActions,
 }
 
 impl Supervisor {
-    /// A disarmed supervisor. With `arms_itself` it arms when it is ready for the first time,
-    /// unless an operator makes a request before. After any later stop it must be armed by request,
-    /// unless [`Conditions::may_rearm`] says otherwise.
+    /// A disarmed supervisor. With `arms_itself` it arms when first ready, unless an operator makes
+    /// a request before. After any later stop it must be armed on request, unless
+    /// [`Conditions::may_rearm`] is set.
     pub(crate) fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
         Supervisor {
             state: State::Disarmed,
@@ -201,7 +201,7 @@ impl Supervisor {
         self.state
     }
 
-    /// The E-stops in force, as text.
+    /// The E-stops in force, as a string.
     pub(crate) fn stopped_by(&self) -> &'static str {
         match self.stops {
             [true, true] => "this boat and of the fleet",
@@ -226,7 +226,7 @@ impl Supervisor {
         if arms_itself && now.missing().is_empty() {
             self.state = State::Armed;
         }
-        // After the request: if arming is granted and fails in the same step, it ends in the
+        // After the request: if arming is granted and fails in the same step, the state becomes a
         // failsafe with its cause.
         self.check_failsafes(now);
         // Any change of state or request uses up self-arming.
@@ -271,7 +271,8 @@ impl Supervisor {
     fn check_failsafes(&mut self, now: &Conditions) {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
-            // After release the boat is disarmed, whatever its state before: someone has to arm it.
+            // After release the boat is disarmed, whatever its state before: an operator must arm
+            // it.
             State::EStopped => State::Disarmed,
             State::Armed => now
                 .causes()
@@ -288,7 +289,7 @@ impl Supervisor {
         };
     }
 
-    /// The failsafe of this cause, with its configured task if the boat can still do it.
+    /// The failsafe for this cause, with the configured task if the boat can still execute it.
     fn failsafe(&self, now: &Conditions, cause: Cause) -> State {
         let task = self
             .task_after(cause)
@@ -296,18 +297,18 @@ impl Supervisor {
         State::Failsafe { cause, task }
     }
 
-    /// Continues a task after a failsafe until the boat cannot do it or a graver cause occurs.
+    /// Continues a task after a failsafe until the boat cannot execute it or a graver cause occurs.
     fn watch_task(&self, now: &Conditions, cause: Cause, task: Task) -> State {
         if let Some(cause) = now.hindrance(task) {
             return State::Failsafe { cause, task: None };
         }
-        // The geofence takes precedence over the battery: a boat that leaves its water endangers
-        // others; one with an empty battery endangers only itself.
+        // The geofence takes precedence over the battery: a boat that leaves its area endangers
+        // others; a boat with an empty battery endangers only itself.
         let graver = now.causes().find(|other| other.gravity() > cause.gravity());
         graver.map_or(self.state, |graver| self.failsafe(now, graver))
     }
 
-    /// The configured task after a failsafe of this cause.
+    /// The configured task after a failsafe for this cause.
     fn task_after(&self, cause: Cause) -> Option<Task> {
         let action = match cause {
             Cause::OrderStale => self.actions.order_stale,
@@ -320,8 +321,8 @@ impl Supervisor {
         };
         match action {
             FailsafeAction::Standby => None,
-            // For four causes only. With an action for each, a user could let a boat keep station
-            // on a lost fix.
+            // For four causes only. With an action for every cause, a user could let a boat keep
+            // station on a lost fix.
             FailsafeAction::StationKeep => Some(Task::StationKeep),
             FailsafeAction::GoToErp => Some(Task::GoToErp),
         }
@@ -329,7 +330,7 @@ impl Supervisor {
 
     fn action(&self, now: &Conditions) -> Action {
         match self.state {
-            // Thrust zero in mode T rather than standby: the boat continues by itself when the box
+            // Zero thrust in mode T rather than standby: the boat continues by itself when the box
             // is clear.
             State::Armed if now.blocked => Action::Zero,
             State::Armed => Action::Follow,
@@ -356,7 +357,7 @@ impl Conditions {
         let control = self.control.map(Cause::Control);
         let nav = self.nav.map(Cause::Nav);
         let thrust = self.thrust.map(Cause::Thrust);
-        // The order in which operators see them: a cause that makes others meaningless comes first.
+        // In the order shown to operators: a cause that makes others meaningless comes first.
         [link, hung, control, nav, thrust, geofence, battery, order]
             .into_iter()
             .flatten()
@@ -369,14 +370,14 @@ impl Conditions {
             .or(self.missing_for(task))
     }
 
-    /// What makes a task impossible after a failsafe of any cause.
+    /// The condition that makes a task impossible after any failsafe, if any.
     fn hindrance(&self, task: Task) -> Option<Cause> {
         self.causes()
             .find(|cause| !cause.leaves_control())
             .or(self.missing_for(task))
     }
 
-    /// What this task needs beyond the common conditions.
+    /// The condition beyond the common ones that this task still needs, if any.
     fn missing_for(&self, task: Task) -> Option<Cause> {
         (task == Task::GoToErp && !self.recovery_point).then_some(Cause::NoRecoveryPoint)
     }

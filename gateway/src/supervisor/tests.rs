@@ -16,7 +16,7 @@ const GOOD: Conditions = Conditions {
     may_rearm: false,
 };
 
-/// Failsafe actions for the causes that allow one: all the same, and all different.
+/// Failsafe actions for the causes that allow one: all equal, and all different.
 fn all_actions() -> Vec<FailsafeActions> {
     use FailsafeAction::{GoToErp, Standby, StationKeep};
     let of = |[order_stale, geofence, battery_low, hung]: [FailsafeAction; 4]| FailsafeActions {
@@ -24,7 +24,7 @@ fn all_actions() -> Vec<FailsafeActions> {
         geofence,
         battery_low,
         hung,
-        // The bridge uses it, not the supervisor.
+        // Used by the bridge, not by the supervisor.
         rearm_within_s: 0.0,
     };
     [
@@ -131,7 +131,7 @@ fn explore(
     known.len()
 }
 
-/// Whether the boat's own controller can do a task, apart from other faults: link, control,
+/// Whether the boat's own controller can execute a task, apart from other faults: link, control,
 /// position, thrusters.
 fn can_do(now: &Conditions, task: Task) -> bool {
     let has_place = task != Task::GoToErp || now.recovery_point;
@@ -249,8 +249,8 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
         };
         let Some(task) = task else {
             assert_eq!(step.action, Action::Standby, "{case}");
-            // A requested task that lacks a condition stops only if the boat cannot do it now or
-            // could not before.
+            // A requested task with a missing condition stops only if the boat cannot execute it
+            // now or could not before.
             let stays = before.state == after.state;
             assert!(
                 stays || wanted.is_none_or(|task| !can_do(now, task)),
@@ -265,7 +265,7 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
             "{case}"
         );
         assert!(can_do(now, task) && !after.is_stopped(), "{case}");
-        // A task after a failsafe starts only from a boat that was driven or delegated.
+        // A task after a failsafe starts only on a boat that was driven or delegated.
         let was_driven = matches!(
             before.state,
             State::Armed | State::Delegated(_) | State::Failsafe { task: Some(_), .. }
@@ -275,7 +275,7 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
             Some(OperatorRequest::Arm | OperatorRequest::Delegate(_))
         );
         assert!(was_driven || asked || before.arms_itself, "{case}");
-        // Outside the geofence, that is the cause.
+        // Outside the geofence, the cause is the geofence.
         assert!(
             now.inside
                 || cause == Cause::Geofence

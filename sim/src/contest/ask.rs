@@ -1,11 +1,11 @@
-//! The boats' requests to the referee, under rules that need requests.
+//! The boats' requests to the referee, for rules that require requests.
 
 use messages::Picture;
 use primitives::{Ned, VehicleId};
 use rules::{Asks, Field, Rules};
 
 /// The requests that a team's boats make from their picture, as with pRangeEvent in the Aquaticus
-/// missions. Any boat that believes it is in range makes a request, because a refusal costs
+/// missions. Every boat that believes itself in range makes a request, since a refusal costs
 /// nothing.
 pub(super) fn asks_of<'a>(
     rules: &Rules,

@@ -14,8 +14,8 @@ pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {
         &scenario.seeds(),
         scenario.rules.time_limit,
     );
-    // Faults of sensors and thrusters belong to the world. The spans follow from the seed before
-    // the game, so a snapshot contains none and processes agree.
+    // Faults of sensors and thrusters belong to the world. The seed determines the spans before the
+    // game, so snapshots contain none and processes agree.
     spans
         .into_iter()
         .filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost))
@@ -33,7 +33,7 @@ impl Contest {
         is_silent(&self.faults[vehicle.index()], self.now())
     }
 
-    /// Starts and ends the agent faults of this tick, with an event each. Boats whose agents die
+    /// Starts and ends the agent faults of this tick, each with an event. Boats whose agents die
     /// then hold.
     pub(super) fn begin_and_end_faults(&mut self) {
         let now = self.now();
@@ -47,8 +47,7 @@ impl Contest {
                     .iter()
                     .any(|span| span.kind == FaultKind::AgentLost && span.is_on(at))
             };
-            // Derived from the previous tick instead of stored: a restored game must log the same
-            // events.
+            // Derived from the previous tick, not stored: a restored game must log the same events.
             let was = now.0 >= tick.0 && is_on(now - tick);
             let is = is_on(now);
             if is {

@@ -1,6 +1,6 @@
 //! A running game: the world, the referee, the orders in force and all events.
 //!
-//! A decision consists of [`Contest::pictures`] to the agents, [`Contest::order`] from them, and
+//! One decision consists of [`Contest::pictures`] to the agents, [`Contest::order`] from them, and
 //! [`Contest::advance`]. The network node and the in-process arena do nothing else, so a game has
 //! the same bytes in both. The world is physics alone; [`Contest::effective_command`] decides what
 //! a boat does in a tick.
@@ -51,11 +51,11 @@ pub struct Contest {
     work: Work,
     /// Identifies the game in snapshots.
     scenario_mark: u64,
-    /// Inputs since the last request, if kept.
+    /// Inputs since the last request, if they are kept.
     given: Option<Vec<Input>>,
 }
 
-/// Memory reused every tick, without state between ticks.
+/// Memory reused every tick, with no state between ticks.
 #[derive(Clone, Default)]
 struct Work {
     commands: Vec<Order>,
@@ -171,8 +171,8 @@ impl Contest {
         &self.state.events
     }
 
-    /// Each team's picture for the open decision, by team index. Repeated calls return the same.
-    /// Each event is in the pictures of exactly one decision.
+    /// Each team's picture for the open decision, by team index. Repeated calls return the same
+    /// pictures. Each event is in the pictures of exactly one decision.
     pub fn pictures(&mut self) -> &[Picture] {
         if self.state.pictured_for != Some(self.state.decision) {
             // Built once per decision, because building draws noise and reads events: an agent that
@@ -261,7 +261,7 @@ impl Contest {
         }
     }
 
-    /// Applies a recorded input. One that was refused in the recording is refused again.
+    /// Applies a recorded input. An input refused in the recording is refused again.
     pub fn give(&mut self, input: Input) {
         match input {
             Input::Pictured => drop(self.pictures()),
@@ -281,14 +281,15 @@ impl Contest {
             } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
-            // In recorded order with all other inputs: in a replay, the order of inputs and ticks
-            // must not depend on clocks.
+            // In the recorded order among all other inputs: in a replay, the order of inputs and
+            // ticks must not depend on clocks.
             Input::Played => self.advance(),
         }
     }
 
-    /// Updates a real boat's navigation at `fix_at`, at most a decision ahead of the game, because
-    /// reports arrive while a decision is open. A report that is not `valid` changes no position.
+    /// Updates a real boat's navigation from a fix at `fix_at`. The fix may be at most one decision
+    /// ahead, since reports arrive while a decision is open. A report that is not `valid` changes
+    /// no position.
     ///
     /// # Errors
     /// [`BadReport`] for implausible numbers and simulated boats; nothing changes then.
@@ -304,7 +305,7 @@ impl Contest {
             .as_mut()
             .ok_or(BadReport::Simulated)?;
         let nav = external::sound(nav)?;
-        // An invalid report is recorded too: it shows that the gateway is present.
+        // Record an invalid report, too: it shows that the gateway is present.
         if valid {
             track.update(nav, fix_at.min(now + self.scenario.decision()));
             let estimate = track.estimate(now);
@@ -321,8 +322,8 @@ impl Contest {
         Ok(())
     }
 
-    /// Whether a boat's position has ever been known: for a real boat from a report, for a
-    /// simulated one always.
+    /// Whether a boat's position has ever been known: always for a simulated boat, from its first
+    /// report for a real one.
     pub fn has_position(&self, vehicle: VehicleId) -> bool {
         self.state.tracks[vehicle.index()]
             .as_ref()
@@ -347,7 +348,7 @@ impl Contest {
         }
     }
 
-    /// Updates what is known ashore from the boats' reports and sightings.
+    /// Updates the knowledge on shore from the boats' reports and sightings.
     fn gather(&mut self) {
         let Contest {
             scenario,
@@ -382,7 +383,7 @@ impl Contest {
             );
         }
         for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
-            // Until a real boat reports, its data stay unknown.
+            // A real boat's data are unknown until it reports.
             if faults::is_silent(&faults[i], now) {
                 continue;
             }
@@ -411,8 +412,8 @@ impl Contest {
         }
     }
 
-    /// Marks a vehicle's agent as lost, with an event; the vehicle holds, as by [`Contest::hold`].
-    /// No effect if it is already lost.
+    /// Marks a vehicle's agent as lost, with an event; the vehicle holds, as with
+    /// [`Contest::hold`]. No effect if it is already lost.
     pub fn lose_agent(&mut self, vehicle: VehicleId) {
         if !std::mem::replace(&mut self.state.agent_lost[vehicle.index()], true) {
             self.note(Input::AgentLost(vehicle));
@@ -454,15 +455,15 @@ impl Contest {
     /// Advances to the next decision or the end of the game.
     pub fn advance(&mut self) {
         // Once per decision, before any tick: if orders expired within a decision, the game would
-        // depend on when this was checked.
+        // depend on the time of this check.
         self.expire_orders();
         self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {
             if self.is_over() {
                 break;
             }
-            // In this order: a fault silences an agent before its orders arrive, and real boats are
-            // at their reported positions before anything moves.
+            // In this order: a fault silences an agent before its orders arrive, and real boats
+            // take their reported positions before anything moves.
             self.begin_and_end_faults();
             self.deliver_orders();
             self.watch_real_boats();
@@ -477,7 +478,7 @@ impl Contest {
         self.assert_sound();
     }
 
-    /// Collects the boats' requests to the referee for this decision, by their teams' last
+    /// Collects the boats' requests to the referee for this decision, based on their teams' last
     /// pictures.
     fn hear_requests(&mut self) {
         let Contest {
@@ -497,8 +498,8 @@ impl Contest {
         }
     }
 
-    /// Plays one tick: boats move, the referee acts and boats are set back. Before a decision,
-    /// sensors are read.
+    /// Plays one tick: boats move, the referee acts and boats are set back. Sensors are read before
+    /// decisions.
     fn step(&mut self) {
         self.update_stations();
         let mut commands = std::mem::take(&mut self.work.commands);
@@ -545,7 +546,7 @@ impl Contest {
         // After the referee, which would otherwise never see a boat enter the circle.
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;
-        // Only before decisions, because nothing reads the sensors in between.
+        // Only before decisions, because no one reads the sensors in between.
         if tick.is_multiple_of(u64::from(scenario.ticks_per_decision)) {
             world.read_sensors();
         }

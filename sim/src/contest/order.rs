@@ -1,4 +1,4 @@
-//! Orders: how they arrive and expire, and the effect of the rules on the order in force.
+//! Orders: their arrival and expiry, and how the rules modify the order in force.
 
 use super::Contest;
 use super::state::OrderInForce;
@@ -11,9 +11,9 @@ use rules::Directive;
 use scenario::boat::Hold;
 
 /// Radius within which a station-keeping boat rests, m.
-// Within the noise of a satellite receiver: with a smaller radius a boat would never rest.
+// Less than the noise of a satellite receiver would never let a boat rest.
 const STATION_RADIUS_M: f64 = 2.0;
-/// Return speed of a station-keeping boat per distance beyond that radius, 1/s.
+/// Return speed of a station-keeping boat per distance beyond this radius, 1/s.
 const STATION_RETURN_PER_S: f64 = 0.5;
 
 impl Contest {
@@ -33,7 +33,7 @@ impl Contest {
         let order = checked.unwrap_or_default();
         let i = vehicle.index();
         let now = self.now();
-        // Otherwise an agent could claim to answer a future picture, and its order would never
+        // Otherwise an agent could claim to answer a future picture, and the order would never
         // expire.
         let given_at = given_at.min(now);
         self.note(Input::Ordered {
@@ -45,7 +45,7 @@ impl Contest {
         if self.is_cut_off(vehicle) {
             return checked.map(drop);
         }
-        // With a radio, the age counts from the sending, not from the arrival.
+        // With a radio, the age of an order counts from sending, not from arrival.
         let in_force = &mut self.state.orders[i];
         in_force.given_at = given_at;
         match &mut self.radio {
@@ -77,7 +77,7 @@ impl Contest {
     /// A vehicle's effective command: its order in force, as modified by rules and operators. A
     /// boat driven home gets a course at the speed allowed by the rules; a speed limit also scales
     /// thrust. A real boat holds while its position or its agent is lost, after its order has
-    /// expired, and after the end of the game: whatever the rules require, it must be supervised.
+    /// expired, and after the end of the game: it must be supervised, whatever the rules require.
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
         if self.is_stopped(i) {
@@ -91,7 +91,7 @@ impl Contest {
         }
     }
 
-    /// Whether a vehicle holds whatever its order and the rules.
+    /// Whether a vehicle holds regardless of its order and the rules.
     fn is_stopped(&self, i: usize) -> bool {
         // A real boat moves only under supervision.
         let is_unsupervised = |track: &Track| {
@@ -137,7 +137,7 @@ impl Contest {
         }
     }
 
-    /// Sets the stations of station-keeping boats that start to hold, and clears all others.
+    /// Sets the stations of boats that start to hold and keep station, and clears all others.
     pub(super) fn update_stations(&mut self) {
         for i in 0..self.state.stations.len() {
             let vehicle = VehicleId::at(i);
@@ -198,7 +198,7 @@ impl Contest {
                     ..*in_force
                 };
             }
-            // Like firmware, the boat's watchdog counts from the last order that arrived; the time
+            // As in firmware, the boat's watchdog counts from the last order that arrived; the time
             // to live counts from the picture.
             if self.watchdogs[i].is_some_and(|limit| now > in_force.arrived_at + limit) {
                 in_force.order = Order::Hold;
@@ -207,7 +207,7 @@ impl Contest {
     }
 }
 
-/// The order that keeps a boat at its station: hold near it, otherwise return to it.
+/// The order that keeps a boat at its station: hold if near it, otherwise return.
 fn keeping_station(at: Ned, station: Ned, speed_max_m_s: f64) -> Order {
     let off_m = at.distance(station);
     if off_m <= STATION_RADIUS_M {

@@ -26,10 +26,10 @@ type Parts = (
 /// Why bytes are not a snapshot of this contest.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum RestoreError {
-    /// Not a snapshot, or one with another layout.
+    /// Not a snapshot, or one with a different layout.
     #[error("not a snapshot of this version of Squall")]
     NotASnapshot,
-    /// A snapshot of another scenario or seed.
+    /// A snapshot of a different scenario or seed.
     #[error("a snapshot of another scenario or seed, or of other versions of its files")]
     OtherScenario,
     /// A truncated or modified snapshot.
@@ -38,12 +38,11 @@ pub enum RestoreError {
 }
 
 impl Contest {
-    /// All changing state as bytes, marked with its game. A contest of the same game restored from
-    /// it continues bit for bit. Inputs kept for [`Contest::take_inputs`] are not
-    /// included.
+    /// The changing state as bytes, marked with its game. A contest of the same game restored from
+    /// them continues bit for bit. Inputs kept for [`Contest::take_inputs`] are not included.
     pub fn snapshot(&self) -> Vec<u8> {
-        // Sea, faults and contact engine are omitted on purpose: they are functions of scenario,
-        // seed and time.
+        // Sea, faults and contact engine are omitted: they are functions of scenario, seed and
+        // time.
         let (radio, sightings) = self.messages();
         let body = bytes(&(self.world.state(), &self.state, radio, sightings));
         let mut snapshot = MAGIC.to_vec();
@@ -64,14 +63,14 @@ impl Contest {
     /// Restores the state from a snapshot of the same game, earlier or later.
     ///
     /// # Errors
-    /// [`RestoreError`]; the contest then stays as it was.
+    /// [`RestoreError`]; the contest then remains unchanged.
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), RestoreError> {
         let rest = snapshot
             .strip_prefix(&MAGIC)
             .ok_or(RestoreError::NotASnapshot)?;
         let (mark, rest) = rest.split_at_checked(8).ok_or(RestoreError::Damaged)?;
         let (check, body) = rest.split_at_checked(8).ok_or(RestoreError::Damaged)?;
-        // A state of another scenario could have the right length and be meaningless.
+        // The state of a different scenario could have the right length and be meaningless.
         if mark != self.scenario_mark.to_le_bytes() {
             return Err(RestoreError::OtherScenario);
         }
@@ -95,10 +94,10 @@ impl Contest {
             .for_each(|(sightings, state)| sightings.state = state);
     }
 
-    /// A contest in the same state in which everything after now is drawn by `seed`.
+    /// A contest in the same state whose later random values come from `seed`.
     ///
     /// # Errors
-    /// [`NoStart`], which the same game without another seed would have met before.
+    /// [`NoStart`], which would have occurred before in the same game with its original seed.
     pub fn reseeded(&self, seed: u64) -> Result<Contest, NoStart> {
         let after_s = self.now().as_s();
         self.continued(|scenario| scenario.reseed.push(Reseed { after_s, seed }))
@@ -126,8 +125,8 @@ impl Contest {
         Ok(contest)
     }
 
-    /// A 128-bit hash over world, standing and all events. In games with radio links, limits on
-    /// sharing or command watchdogs it also covers orders in force, messages in transit and
+    /// A 128-bit hash of world, standing and all events. In games with radio links, limits on
+    /// sharing or command watchdogs, it also covers orders in force, messages in transit and
     /// contacts; with real boats, their fixes.
     pub fn digest(&self) -> u128 {
         let ContestState {
@@ -141,7 +140,7 @@ impl Contest {
         let mut hash = xxh3::Xxh3::new();
         hash.update(&xxh3::xxh3_128(&bytes(&(self.world.state(), standing))).to_le_bytes());
         for logged in events {
-            // In recorded form, field by field: a change of the Rust types alone must not change a
+            // In recorded form, field by field: changing only the Rust types must not change a
             // digest.
             let record = messages::EventRecord::from(*logged);
             hash.update(&record.tick.to_le_bytes());
@@ -149,8 +148,7 @@ impl Contest {
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
         }
-        // Only if present, so that the digests of games without radios did not change when radios
-        // were added.
+        // Only if present, so that adding radios did not change the digests of games without them.
         if self.radio.is_some()
             || self.sightings.is_some()
             || self.watchdogs.iter().any(Option::is_some)

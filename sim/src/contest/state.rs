@@ -1,4 +1,4 @@
-//! The changing state of a contest without its boats, and its invariants.
+//! The changing state of a contest, except its boats, and its invariants.
 
 use super::Contest;
 use crate::external::Track;
@@ -10,7 +10,7 @@ use rules::count::Tally;
 use rules::event::{EventCursor, Logged};
 use serde::{Deserialize, Serialize};
 
-/// The state of a game: the referee's standing, orders to the boats, and knowledge ashore.
+/// The state of a game: the referee's standing, orders to the boats, and knowledge on shore.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContestState {
     /// The open decision.
@@ -27,10 +27,10 @@ pub(super) struct ContestState {
     pub(super) halted: bool,
     /// Tracks of the real boats, by vehicle index.
     pub(super) tracks: Vec<Option<Track>>,
-    /// Own boats as known ashore in the last pictures.
+    /// Own boats as known on shore in the last pictures.
     pub(super) known: Vec<OwnBoat>,
     pub(super) events: Vec<Logged>,
-    /// Event position of the last pictures.
+    /// Position in the events at the last pictures.
     pub(super) pictured: EventCursor,
     /// The decision of the last pictures.
     pub(super) pictured_for: Option<u64>,
@@ -58,7 +58,7 @@ impl Contest {
             self.scenario.tick * world.tick as i64,
             "time is the number of ticks"
         );
-        // The world quarantines boats with a non-finite state. If one gets past that, it is our
+        // The world quarantines boats with a non-finite state. If one gets past that, we have a
         // bug, and the game's result would be worthless.
         assert!(
             world.boats.iter().all(|boat| boat.pose.at.is_finite()),
@@ -66,7 +66,7 @@ impl Contest {
         );
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
-            // Three rules interact here, and each could break this.
+            // Three rules interact here, and each of them could break this.
             assert!(
                 boat.in_play && !boat.tagged && !boat.outside,
                 "vehicle {i} carries a flag out of play"
@@ -95,7 +95,7 @@ impl Contest {
 
     /// Checks that the score equals the sum over the events.
     pub(super) fn assert_score(&self) {
-        // Counted from the events, so that referee and log cannot diverge.
+        // Count from the events, so that referee and log cannot diverge.
         let mut tally = Tally::new(self.scenario.vehicles.len());
         self.state
             .events

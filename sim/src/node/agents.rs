@@ -1,4 +1,4 @@
-//! Accepts or refuses agents' orders, without network and clock.
+//! Accepts or refuses agents' orders, without a network or clock.
 
 use super::membership::Membership;
 use super::settings::Pace;
@@ -29,7 +29,7 @@ pub fn accept(
         refusals.count(Refusal::Ticket);
         return accepted;
     }
-    // A valid ticket shows that the agent is present, in time or not.
+    // A valid ticket shows that the agent is present, whether in time or not.
     accepted.back = agents.welcome_back(message.ticket);
     let seq = message.stamp.seq;
     // A duplicate: the sim repeats pictures and agents repeat replies, which replaces
@@ -37,8 +37,8 @@ pub fn accept(
     if own.iter().any(|vehicle| agents.has_taken(*vehicle, seq)) {
         return accepted;
     }
-    // In real time an agent that is a tick late is still useful: its order counts until its time to
-    // live is over.
+    // In real time, an agent that is a tick late is still useful: its order counts until its time
+    // to live ends.
     if seq > tick || (seq < tick && pace == Pace::Lockstep) {
         refusals.count(Refusal::WrongTick);
         return accepted;
@@ -49,7 +49,7 @@ pub fn accept(
     accepted
 }
 
-/// One order for each vehicle of the agent; hold if there is no valid one.
+/// One order for each vehicle of the agent; hold for vehicles without a valid order.
 fn orders_for(
     own: &[VehicleId],
     message: &Orders,
@@ -67,8 +67,8 @@ fn orders_for(
     }
     for vehicle in own {
         if !orders.iter().any(|(given, _)| given == vehicle) {
-            // It holds instead of continuing its previous order: a mind that forgets a boat has a
-            // bug, and the result reports it.
+            // The boat holds instead of continuing its previous order: a mind that forgets a boat
+            // has a bug, and the result reports it.
             refusals.count(Refusal::Missing);
             orders.push((*vehicle, Order::Hold));
         }
@@ -88,7 +88,7 @@ mod tests {
         starboard: 1.0,
     };
 
-    /// Agents of a game with their vehicles, and tickets from 1 on.
+    /// Agents of a game with these vehicles, and tickets from 1 on.
     fn agents(all: &[&[&str]]) -> Membership {
         let mut agents = membership(Role::Agent, false);
         for (i, vehicles) in all.iter().enumerate() {
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn what_an_agent_gets_wrong_is_counted_and_its_boat_holds() {
-        // Invalid numbers are refused by the contest; an unknown kind is refused before that.
+        // The contest refuses invalid numbers; an unknown kind is refused before that.
         let unknown = VehicleOrder {
             kind: 9,
             ..VehicleOrder::new(VehicleId(0), PUSH)

@@ -38,8 +38,8 @@ impl<Q> ControlInbox<Q> {
     pub(super) fn put_stop(&self, bytes: &[u8]) -> bool {
         let control = serde_json::from_slice::<Control>(bytes);
         self.0.visit(|waiting| match control {
-            // Publishing needs no token for stops; all other commands must be queries with the
-            // token.
+            // Only stops can be published without the token; all other commands must be queries
+            // with it.
             Ok(control) if control.stops() => {
                 waiting.put_stop(control);
                 true
@@ -80,8 +80,8 @@ impl<Q> ControlInbox<Q> {
 }
 
 impl<Q> Waiting<Q> {
-    /// Adds a stop unless it repeats the last command. In a full inbox it replaces all commands
-    /// that are not stops.
+    /// Adds a stop unless it repeats the last command. In a full inbox, the stop replaces all
+    /// commands that are not stops.
     fn put_stop(&mut self, stop: Control) {
         let is_stop = |command: &Command<Q>, stop| matches!(command, Command::Stop(waiting) if *waiting == stop);
         // Senders repeat stops until they get a reply; duplicates would only fill the inbox.
@@ -154,8 +154,8 @@ mod tests {
             [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]
         );
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
-        // Alternating stops and queries do not fill it either: no release is left behind after the
-        // stop that it ends.
+        // Alternating stops and queries do not fill the inbox either: no release is left behind
+        // after the stop that it ends.
         for i in 0..1000 {
             send(
                 &inbox,

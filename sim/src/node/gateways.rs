@@ -1,4 +1,4 @@
-//! Accepts or refuses gateways' reports, without network and clock.
+//! Accepts or refuses gateways' reports, without a network or clock.
 
 use super::membership::Membership;
 use messages::external::NavReport;
@@ -32,8 +32,8 @@ pub fn accept(
         drop(own);
         gateways.note_taken(vehicle, seq);
         gateways.welcome_back(report.ticket);
-        // The age is by the gateway's own clock; the time of the fix would require synchronised
-        // clocks.
+        // The age comes from the gateway's own clock; using the time of the fix would require
+        // synchronised clocks.
         return Some(now - SimTime(report.age_ns).min(OLDEST));
     };
     refusals.count(refusal);
@@ -48,7 +48,8 @@ mod tests {
     use messages::{Message, Role, Stamp};
     use primitives::VehicleId;
 
-    /// A gateway with ticket 7 for these of the real boats blue one (0) and red one (2).
+    /// A gateway with ticket 7 for the given boats out of the real boats blue one (0) and red one
+    /// (2).
     fn gateways(vehicles: &[&str]) -> Membership {
         let mut gateways = membership(Role::Gateway, true);
         gateways.join(&request(Role::Gateway, "a", vehicles), 7, NOW);

@@ -17,7 +17,7 @@ pub(super) fn play(
 ) -> Result<(), NodeError> {
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
-        // Before the pictures are sent: the recording of a decision is then complete even if the
+        // Before sending the pictures: then the recording of a decision is complete even if the
         // game is killed while agents compute.
         server.record();
         server.send_pictures()?;
@@ -25,11 +25,11 @@ pub(super) fn play(
         gather(server, tell)?;
         if server.pacing.is_held() {
             server.stay_paused(tell)?;
-            // Other nodes may have joined in the meantime.
+            // Meanwhile, other nodes may have joined.
             gather(server, tell)?;
             due = clock::now();
         }
-        // Some agents have not replied: later replies are not late.
+        // Some agents have not replied; later replies do not count as late.
         if server.is_stopped() {
             break;
         }
@@ -53,7 +53,7 @@ fn keep_speed(
     };
     let decision_s = server.contest.scenario().decision().as_s();
     let now = clock::now();
-    // Lost time is not made up.
+    // Lost time is not recovered.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);
     // The speed may change, and the game may be paused, during the wait.
     while clock::now() < due
@@ -70,21 +70,21 @@ fn keep_speed(
     Ok(due.min(clock::now()))
 }
 
-/// Waits until all agents have replied to the open decision. Agents that exceed the scenario's
-/// patience are lost.
+/// Waits until all agents have replied to the open decision. Agents that exceed the time limit of
+/// the scenario are lost.
 fn gather(
     server: &mut GameServer<'_>,
     tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<(), NodeError> {
     let tick = server.contest.decision();
     let patience = Duration::from_secs_f64(server.contest.scenario().patience_s);
-    // Patience is measured in working time.
+    // The time limit is measured in working time.
     let since = server.time.worked;
     let mut sent = clock::now();
     while !server.agents.all_answered(tick) && !server.is_stopped() {
         server.listen(Duration::from_millis(50));
         if server.time.worked.saturating_sub(since) >= patience {
-            // Drops all that have not replied at once: the next decision waits for none of them.
+            // Drop all that have not replied at once: the next decision waits for none of them.
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
             server.send_pictures()?;
@@ -92,7 +92,7 @@ fn gather(
             sent = clock::now();
         }
     }
-    // Handles nodes that joined or left meanwhile, if the game waits for none.
+    // Handle nodes that joined or left meanwhile, in case the game waits for no one.
     server.listen(Duration::ZERO);
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Membership of a game: agents that decide for vehicles, and gateways that connect real boats,
 //! with one list per role.
-//!
-//! A node that joins gets a ticket and sends it with every message. No network and no clock here:
+//! A node that joins gets a ticket and sends it with every message. This module uses neither
+//! network nor clock: the server passes in messages and acts on the results.
 //! the server passes in messages and acts on the results.
 
 use messages::{JoinReply, JoinRequest, Role};
@@ -20,7 +20,7 @@ pub struct Membership {
 #[derive(Clone, Debug)]
 struct Place {
     name: String,
-    /// Whether it is open to this role: gateways connect only real boats.
+    /// Whether a node with this role may join for it: gateways connect only real boats.
     is_open: bool,
     holder: Option<Holder>,
 }
@@ -30,9 +30,9 @@ struct Place {
 struct Holder {
     node: String,
     ticket: u64,
-    /// Whether it counts as present: neither dead nor silent.
+    /// Whether the node counts as present: neither dead nor silent.
     is_present: bool,
-    /// The sequence number of its newest accepted message.
+    /// The sequence number of the newest accepted message.
     newest: Option<u64>,
 }
 
@@ -56,15 +56,14 @@ impl Membership {
         }
     }
 
-    /// Handles a join request at this time of the game. `ticket` is the node's ticket if it joins.
-    ///
-    /// A node that requests its own vehicles again gets them with the new ticket: the reply was
-    /// lost.
+    /// Handles a join request at this time of the game. `ticket` becomes the node's ticket if it
+    /// joins. A node that requests its own vehicles again gets them with the new ticket, since the
+    /// reply was lost.
     pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
-        // Exactly equal: two versions may agree on messages and differ in a rounding, and then in
-        // the game.
+        // Must be equal: two versions may agree on messages but differ in rounding, and so in the
+        // game.
         if request.version != primitives::VERSION {
             let theirs = &request.version;
             let ours = primitives::VERSION;
@@ -96,14 +95,14 @@ impl Membership {
                     vehicle: name.clone(),
                 };
             }
-            // A repeated name is a typing error and would make the count of boats wrong.
+            // A repeated name is a typing error and would make the number of boats wrong.
             if vehicles.contains(&VehicleId::at(i)) {
                 return refused(format!("the {role} names {name:?} twice"));
             }
             vehicles.push(VehicleId::at(i));
         }
         for vehicle in &vehicles {
-            // A new ticket voids the old one, so that an agent presumed dead cannot steer beside
+            // A new ticket voids the old one, so that an agent presumed dead cannot steer alongside
             // its successor.
             let holder = Holder {
                 node: request.node.clone(),
@@ -192,11 +191,11 @@ impl Membership {
         }
     }
 
-    /// Removes a node. Returns its abandoned vehicles, to which it may return unless another node
-    /// takes them.
+    /// Removes a node. Returns its abandoned vehicles, to which it may return unless a different
+    /// node takes them.
     pub fn gone(&mut self, node: &str) -> Vec<VehicleId> {
-        // Identified by the link that zenoh reports as gone, not by a liveliness token, which
-        // anyone could show in another's name.
+        // Identified by the link that zenoh reports as lost, not by a liveliness token, which
+        // anyone could present in another node's name.
         self.lose(|holder| holder.node == node)
     }
 
@@ -205,7 +204,7 @@ impl Membership {
         self.lose(|holder| holder.newest.is_none_or(|newest| newest < tick))
     }
 
-    /// Drops the node that has this vehicle. Returns all its abandoned vehicles.
+    /// Drops the node that holds this vehicle. Returns all its abandoned vehicles.
     pub fn lose_holder_of(&mut self, vehicle: VehicleId) -> Vec<VehicleId> {
         let ticket = self.places[vehicle.index()]
             .present()

@@ -1,5 +1,4 @@
-//! Messages from other nodes to the game. Every sender has its own space, which no other sender can
-//! use up.
+//! Messages from other nodes to the game. Each sender has its own space, which others cannot fill.
 
 use bus::{Query, Watched};
 use messages::external::{NavReport, Reported};
@@ -15,7 +14,7 @@ pub(super) enum Incoming {
     Orders(Orders),
     /// A report, with its bytes for the recorder.
     Nav(NavReport, Vec<u8>),
-    /// A gateway report for other nodes: its ticket, the boat and the message.
+    /// A gateway report to forward to other nodes: the gateway's ticket, the boat and the message.
     Report {
         ticket: u64,
         vehicle: VehicleId,
@@ -23,7 +22,7 @@ pub(super) enum Incoming {
         message: Vec<u8>,
     },
     Join(Query),
-    /// Only for the recorder: the topic's index in the list, and the message.
+    /// For the recorder only: the index of the topic in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
     /// The link to this node is lost.
     Gone(String),
@@ -45,12 +44,12 @@ impl Incoming {
     }
 }
 
-/// The sender of a message, for sharing the space.
+/// The sender of a message, by which space is shared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Sender {
     /// The node with this ticket.
     Member(u64),
-    /// The gateway with this ticket, with reports for other nodes.
+    /// The gateway with this ticket, as the sender of reports for other nodes.
     Reporting(u64),
     /// Nodes that request to join.
     Joining,
@@ -58,7 +57,7 @@ enum Sender {
     Recorded(usize),
     /// The network, which reports lost nodes.
     Network,
-    /// Other inboxes that have messages.
+    /// Other inboxes with messages.
     Inboxes,
 }
 
@@ -66,15 +65,15 @@ impl Sender {
     /// Maximum number of waiting messages: more than arrive between two reads by the sim.
     fn share(self) -> usize {
         match self {
-            // Space per topic or per link would need no tickets, but anyone can publish on any
-            // number of topics over any number of links.
+            // Space per topic or link would not need tickets, but anyone can publish on any number
+            // of topics over any number of links.
             Sender::Member(_) => 128,
             // Includes every byte between a gateway and its boat.
             Sender::Reporting(_) => 2048,
             Sender::Joining => 64,
             Sender::Recorded(_) => 2048,
             Sender::Network => 1024,
-            // One notification reads all of them.
+            // A single notification makes the sim read all of them.
             Sender::Inboxes => 1,
         }
     }
@@ -84,7 +83,7 @@ impl Sender {
 #[derive(Default)]
 pub(super) struct MessageInbox {
     waiting: Watched<Waiting>,
-    // Separate, because refused messages must not wake the reader.
+    // Separate, so that refused messages do not wake the reader.
     gate: Watched<Gate>,
 }
 
@@ -95,7 +94,7 @@ struct Waiting {
     counts: BTreeMap<Sender, usize>,
 }
 
-/// The valid tickets and the counted refusals.
+/// The valid tickets and the counts of refusals.
 #[derive(Default)]
 struct Gate {
     tickets: BTreeSet<u64>,
@@ -108,7 +107,7 @@ impl MessageInbox {
         self.gate.visit(|gate| gate.tickets = tickets);
     }
 
-    /// Decodes a message. Invalid ones are counted and take no space.
+    /// Decodes a message. Invalid messages are counted and take no space.
     pub(super) fn decode<M: Message + DeserializeOwned>(&self, bytes: &[u8]) -> Option<M> {
         self.gate.visit(|gate| gate.refusals.decode(bytes))
     }
@@ -130,7 +129,7 @@ impl MessageInbox {
             }
             has_room
         });
-        // A notification without space is not lost, because another one is already waiting.
+        // A notification without space is not lost, because one is already waiting.
         if !has_room && sender != Sender::Inboxes {
             self.refuse(Refusal::Flood);
         }

@@ -1,7 +1,7 @@
 //! The sim on the network: lets nodes join, paces the game and publishes it.
 //!
 //! [`serve`] plays one game from the first join to the last frame. [`Contest`], [`membership`],
-//! [`agents`] and [`gateways`] make all decisions; this module has the sockets and the clocks.
+//! [`agents`] and [`gateways`] make all decisions; this module contains the sockets and clocks.
 
 pub mod agents;
 mod control_inbox;
@@ -44,14 +44,15 @@ pub fn serve(
         // A real boat does not wait while agents compute.
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
-    // Before the hub opens: a game whose boats do not fit is refused before any node joins.
+    // Before the hub opens: a game whose boats do not fit is rejected before any node joins.
     let contest = Contest::new(scenario, seed)?;
     let mut server = GameServer::open(contest, settings, recorder)?;
     tell(ProgressMessage::Open {
         game: settings.game.as_str().to_owned(),
         endpoint: settings.net.local_endpoint().unwrap_or_default(),
     });
-    // Simulated time starts when all are present: the start-up of programs is not part of a game.
+    // Simulated time starts when all nodes are present: the start-up of programs is not part of a
+    // game.
     server.wait_for_everybody(settings.join_limit, tell)?;
     tell(ProgressMessage::Started);
     let started = clock::now();

@@ -12,11 +12,11 @@ pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
     serde_json::to_vec(&contest.world().sea().water()).expect("waves are JSON")
 }
 
-/// Maximum number of events in a reply: a link carries at most a megabyte at once, and
-/// observers do not wait long.
+/// Maximum number of events in a reply: a link carries at most a megabyte at once, and observers
+/// wait only briefly.
 const EVENTS_MAX: usize = 5000;
 
-/// The events so far, as JSON; the last ones if there are too many.
+/// The events so far, as JSON; only the last ones if there are too many.
 pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
     let scenario = contest.scenario();
     let all = contest.events();
@@ -36,7 +36,7 @@ pub(super) struct RecordedTopic {
 
 impl RecordedTopic {
     fn of<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
-        // Checked before recording: a stranger's message must not make a reader fail.
+        // Check before recording: an unknown sender's message must not make a reader fail.
         RecordedTopic {
             topic,
             schema: M::SCHEMA,

@@ -1,10 +1,10 @@
-//! Pause and speed of a running game, controlled by operators.
+//! Pause and speed of a running game, as set by operators.
 
 use messages::Control;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pacing {
-    /// Whether an operator has paused it.
+    /// Whether an operator has paused the game.
     pub(super) is_paused: bool,
     /// Decisions still to play while paused.
     steps: u32,
@@ -42,9 +42,9 @@ impl Pacing {
         match control {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
             Control::Resume => (self.is_paused, self.steps) = (false, 0),
-            // Counted, because an operator may press the key faster than decisions are played.
+            // Count them, because an operator may press the key faster than decisions are played.
             Control::Step if self.is_paused => self.steps = self.steps.saturating_add(1),
-            // Real boats have a single speed.
+            // Real boats have only one speed.
             Control::Speed(Some(speed)) if Control::SPEEDS.contains(&speed) && !self.is_real => {
                 self.speed = Some(speed);
             }

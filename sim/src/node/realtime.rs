@@ -1,4 +1,4 @@
-//! Real time or a multiple of it: the clock sets the pace, and the game waits for no node.
+//! Real time or a multiple of it: the clock sets the pace, and the game does not wait for nodes.
 
 use super::server::GameServer;
 use super::settings::NodeError;
@@ -30,12 +30,12 @@ pub(super) fn play(
         }
         let late = clock::since(due);
         if late > period {
-            // Lost time is not made up: the game runs slower than requested and reports it.
+            // Lost time is not recovered: the game runs slower than requested and reports it.
             server.overruns += 1;
             due = clock::now();
         }
         due += period;
-        // At this pace, silence is measured from an agent's last message.
+        // At this pace, silence counts from an agent's last message.
         server.lose_silent();
         server.contest.advance();
         server.pacing.played();

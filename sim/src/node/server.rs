@@ -34,9 +34,9 @@ use std::time::{Duration, Instant};
 const QUESTIONS: usize = 64;
 /// Period of progress reports.
 const REPORT_EVERY: Duration = Duration::from_millis(100);
-/// Interval at which the unchanged state of the run is recorded.
+/// Interval at which an unchanged run state is recorded.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
-/// Time that agents have to leave when the game is over.
+/// Time limit for agents to leave when the game is over.
 const SHUTDOWN: Duration = Duration::from_secs(2);
 /// Time after which the end of the game is sent again to agents that have not left.
 const SEND_END_AGAIN: Duration = Duration::from_millis(200);
@@ -52,14 +52,14 @@ pub(super) struct GameServer<'w> {
     inbox: Arc<MessageInbox>,
     bus: Bus,
     pictures: Vec<Publisher>,
-    /// In real time, by team.
+    /// By team, in real time.
     throttles: Vec<Throttle>,
     /// Subscriptions to the bytes of boats' links, while they are recorded or observed.
     link_reports: BTreeMap<VehicleId, Declaration>,
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
-    /// Event position of the frames.
+    /// Position in the events at the last frame.
     shown: EventCursor,
     /// The last frame built.
     frame: Option<Arc<Frame>>,
@@ -102,7 +102,7 @@ impl<'w> GameServer<'w> {
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
-        // The hub needs the scenario, because its rules list every topic by team and boat.
+        // The hub needs the scenario, because its access rules list every topic by team and boat.
         let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
         let controls = Arc::new(ControlInbox::default());
@@ -114,7 +114,7 @@ impl<'w> GameServer<'w> {
             others,
         };
         let game = &settings.game;
-        // A game's inputs use memory, and only the recorder takes them.
+        // Keeping a game's inputs takes memory, and only the recorder reads them.
         if recorder.is_some() {
             contest.keep_inputs();
         }
@@ -137,7 +137,7 @@ impl<'w> GameServer<'w> {
         let pictures = teams
             .map(|key| bus.publisher_with(key, Priority::Normal, delivery))
             .collect::<Result<_, _>>()?;
-        // Commands to boats are urgent: they overtake everything that is waiting on a link.
+        // Commands to boats are urgent: they overtake all other waiting messages on a link.
         let urgent = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
         let to_boat = |v| Ok((v, urgent(topic::external_order(game, scenario, v))?));
         let external_orders: Vec<_> = scenario
@@ -201,8 +201,8 @@ impl<'w> GameServer<'w> {
         })
     }
 
-    /// Waits until every vehicle has an agent and every real boat has reported, at most until the
-    /// time limit. Missing agents are then lost.
+    /// Waits until every vehicle has an agent and every real boat has reported, up to the time
+    /// limit. Agents still missing are lost.
     pub(super) fn wait_for_everybody(
         &mut self,
         limit: Duration,
@@ -231,7 +231,7 @@ impl<'w> GameServer<'w> {
             self.listen(Duration::from_millis(100));
         }
         self.last_report = (clock::now(), SimTime::ZERO);
-        // The first agents have waited for the last, so their silence up to now does not count.
+        // The first agents have waited for the last, so their silence so far does not count.
         self.heard.fill(self.time.worked);
         Ok(())
     }
@@ -277,7 +277,7 @@ impl<'w> GameServer<'w> {
 
     /// Publishes the frame if there are observers.
     pub(super) fn send_frame(&mut self) -> Result<(), NodeError> {
-        // Otherwise every lockstep decision would pay for encoding a frame that nobody reads.
+        // Otherwise each lockstep decision would spend time encoding a frame that no one reads.
         if !self.frames.is_heard() {
             return Ok(());
         }
@@ -286,7 +286,7 @@ impl<'w> GameServer<'w> {
     }
 
     /// Sends every team its picture of the open decision, and every real boat its order. Sending
-    /// twice is harmless.
+    /// them twice is harmless.
     pub(super) fn send_pictures(&mut self) -> Result<(), NodeError> {
         // Reports of real boats arrive while a decision is open; their age counts back from this
         // moment.
@@ -310,7 +310,7 @@ impl<'w> GameServer<'w> {
         (0..self.external_orders.len()).try_for_each(|i| self.pass_on(self.external_orders[i].0))
     }
 
-    /// Sends a real boat its effective command, or hold while the game is paused. No effect for
+    /// Sends a real boat its effective command, or hold while the game is paused. No effect on
     /// simulated boats.
     fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
         let Some(boat) = self
@@ -345,7 +345,7 @@ impl<'w> GameServer<'w> {
             seq,
             version: ExternalOrder::VERSION,
         };
-        // The time of the answered picture, by which the gateway judges an order's age, however
+        // The time of the answered picture: from it the gateway computes an order's age, however
         // often the order is repeated.
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder {
@@ -369,10 +369,10 @@ impl<'w> GameServer<'w> {
         self.lose_agents(vehicles);
     }
 
-    /// Drops agents that have been silent for longer than the scenario's patience.
+    /// Drops agents that have been silent for longer than the scenario allows.
     pub(super) fn lose_silent(&mut self) {
-        // In working time, not by the clock: a suspended sim must not blame agents for silence
-        // during that time.
+        // In working time, not by the clock: agents must not be blamed for silence while the sim
+        // was suspended.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
             if self.time.worked.saturating_sub(self.heard[i]) > patience {
@@ -382,7 +382,7 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Marks the agents of these vehicles as lost. Real boats get their new order at once.
+    /// Marks the agents of these vehicles as lost. Real boats get their new orders at once.
     fn lose_agents(&mut self, vehicles: Vec<VehicleId>) {
         for vehicle in vehicles {
             self.contest.lose_agent(vehicle);
@@ -410,7 +410,7 @@ impl<'w> GameServer<'w> {
         if passed < REPORT_EVERY && !self.is_news {
             return Ok(());
         }
-        // Over zero time the rate would be infinite, and the page could not draw it.
+        // The rate over zero time would be infinite, and the page could not plot it.
         let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
         self.last_report = (clock::now(), self.contest.now());
         self.reporter
@@ -426,7 +426,7 @@ impl<'w> GameServer<'w> {
     }
 
     /// Subscribes to the bytes of a boat's link while they are recorded or observed. A gateway
-    /// behind a slow link sends them only then: they are most of its traffic.
+    /// behind a slow link sends them only then, since they are most of its traffic.
     fn follow_links(&mut self) -> Result<(), NodeError> {
         let scenario = self.contest.scenario();
         for vehicle in scenario.externals() {
@@ -507,7 +507,7 @@ impl<'w> GameServer<'w> {
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
         let mut sent = start;
-        // Any message may get lost. An agent that misses this one reports a lost sim; an agent that
+        // Any message may be lost. An agent that misses this one reports a lost sim; one that
         // leaves has received it. The wait is limited, because an agent may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));
@@ -538,18 +538,19 @@ impl<'w> GameServer<'w> {
         Ok(())
     }
 
-    /// Sends a real boat its order between two decisions. The next decision detects a closed
-    /// session.
+    /// Sends a real boat its order between two decisions. If the session has closed, the next
+    /// decision detects it.
     fn pass_on_now(&mut self, vehicle: VehicleId) {
         self.pass_on(vehicle).unwrap_or_default();
     }
 
-    /// Waits while the game is paused: keeps agents and boats, and reads messages.
+    /// Waits while the game is paused: keeps agents and boats alive, and reads messages.
     pub(super) fn stay_paused(
         &mut self,
         tell: &mut dyn FnMut(ProgressMessage),
     ) -> Result<(), NodeError> {
-        /// Agents leave if they receive nothing for too long.
+        /// Interval at which messages are repeated: agents leave if they receive nothing for too
+        /// long.
         const SEND_AGAIN: Duration = Duration::from_secs(1);
         let mut sent = clock::now();
         while self.pacing.is_held() && !self.is_stopped() {
@@ -560,7 +561,7 @@ impl<'w> GameServer<'w> {
                 sent = clock::now();
             }
         }
-        // Agents had nothing to reply to in the meantime.
+        // Meanwhile, agents had nothing to reply to.
         self.heard.fill(self.time.worked);
         Ok(())
     }

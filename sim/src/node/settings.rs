@@ -1,4 +1,4 @@
-//! Settings of a sim node, and why it may fail.
+//! Settings of a sim node, and its errors.
 
 use crate::spawn::NoStart;
 use bus::{BusError, Net};
@@ -13,7 +13,7 @@ use thiserror::Error;
 pub enum Pace {
     /// Every decision waits for every agent: as fast as the slowest agent, and reproducible.
     Lockstep,
-    /// Follows the clock times this factor and waits for no agent.
+    /// Runs at this multiple of real time, without waiting for agents.
     Realtime {
         /// Simulated seconds per second.
         factor: f64,
@@ -32,14 +32,14 @@ pub struct Settings {
     pub join_limit: Duration,
     /// In lockstep: maximum simulated seconds per second, until an operator changes it.
     pub speed: Option<f64>,
-    /// Set externally to end the game early.
+    /// Set by the caller to end the game early.
     pub stop: Arc<AtomicBool>,
 }
 
-/// Why a game could not be served.
+/// A reason why a game could not be served.
 #[derive(Debug, Error)]
 pub enum NodeError {
-    /// The boats do not fit on the field, or are real in lockstep.
+    /// The boats do not fit on the field, or the game has real boats but is in lockstep.
     #[error(transparent)]
     NoStart(#[from] NoStart),
     /// The network failed.
@@ -51,7 +51,7 @@ impl std::fmt::Display for Pace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Pace::Lockstep => f.write_str("lockstep"),
-            // In a form that can be parsed: a recording's pace can be passed to another run.
+            // In a form that can be parsed: a recording's pace can be passed to a new run.
             Pace::Realtime { factor } if *factor == 1.0 => f.write_str("realtime"),
             Pace::Realtime { factor } => write!(f, "{factor}x"),
         }

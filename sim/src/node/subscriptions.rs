@@ -1,5 +1,5 @@
-//! A sim's subscriptions and queries, with one inbox each for commands, observers' queries and all
-//! other messages.
+//! A sim's subscriptions and queries, with separate inboxes for commands, observers' queries and
+//! all other messages.
 
 use super::control_inbox::ControlInbox;
 use super::message_inbox::{Incoming, MessageInbox};
@@ -35,7 +35,7 @@ impl Inboxes {
     ) -> impl Fn(&[u8]) + Send + Sync + use<M> {
         let others = Arc::clone(&self.others);
         move |bytes: &[u8]| {
-            // Decoded in zenoh's thread, so that invalid bytes never wake the loop.
+            // Decode in zenoh's thread, so that invalid bytes never wake the loop.
             if let Some(message) = others.decode::<M>(bytes) {
                 others.push(incoming(message, bytes));
             }
@@ -72,7 +72,7 @@ pub(super) fn subscribe_report(
                 what,
                 message: message.to_vec(),
             }),
-            // Counted with all other refusals, which the result and the page show.
+            // Count it with all other refusals, which the result and the page show.
             None => others.refuse(Refusal::Garbage),
         }
     })
@@ -108,8 +108,8 @@ pub(super) fn open(
     let others = || Arc::clone(&inboxes.others);
     let gone = others();
     let joins = others();
-    // If the inbox is full, this can be dropped: the sim is busy and checks the inbox before each
-    // message anyway.
+    // If the inbox is full, this may be dropped: a busy sim checks for stops before each message
+    // anyway.
     let stops = Arc::clone(&inboxes.controls);
     let look = others();
     let stop = move |bytes: &[u8]| {

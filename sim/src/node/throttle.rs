@@ -1,19 +1,19 @@
 //! Sends fewer pictures over a link that cannot carry all of them.
 //!
 //! QUIC queues the datagrams that its congestion window does not admit, up to a mebibyte of them.
-//! Over a link that is slower than the sim, orders would reply to ever older pictures. As in LEDBAT
-//! (RFC 6817), the time in queues is the round-trip time beyond its recent minimum.
+//! Over a link slower than the sim, orders would reply to ever older pictures. As in LEDBAT (RFC
+//! 6817), the time in queues is the round-trip time beyond its recent minimum.
 
 use std::time::{Duration, Instant};
 
-/// The time in queues above which pictures are skipped.
+/// Queueing time above which pictures are skipped.
 const QUEUED_MAX: Duration = Duration::from_millis(300);
 /// Maximum number of pictures skipped in a row: an order lives for a second, and the next picture
 /// may be lost.
 const SKIPPED_MAX: u32 = 2;
 /// The minimum covers one to two windows.
 const WINDOW: Duration = Duration::from_secs(10);
-/// A team that has not replied for this long is absent, not slow.
+/// Time without a reply after which a team is absent, not slow.
 const ABSENT: Duration = Duration::from_secs(2);
 
 /// The queues between the sim and the agents of a team.
@@ -61,7 +61,7 @@ mod tests {
 
     const PERIOD: Duration = Duration::from_millis(100);
 
-    /// The fraction of 600 pictures sent over a link with this delay each way that carries one
+    /// The fraction of 600 pictures sent over a link with this one-way delay that carries one
     /// picture per `spacing`, and the last round trip.
     fn play(delay: Duration, spacing: Duration) -> (f64, Duration) {
         let start = bus::clock::now();
@@ -98,8 +98,8 @@ mod tests {
             );
             let (share, round_trip) = play(delay, ms(200));
             assert!((0.4..0.6).contains(&share), "{delay:?}: {share}");
-            // Pictures sent before a reply reveals the queue are queued as well. Without skipping,
-            // the last round trip would take a minute.
+            // Pictures sent before a reply reveals the queue also wait in it. Without skipping, the
+            // last round trip would take a minute.
             assert!(
                 round_trip < 4 * delay + ms(1100),
                 "{delay:?}: {round_trip:?}"

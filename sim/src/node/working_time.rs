@@ -1,9 +1,9 @@
-//! Working time of a sim, by which it measures its patience with other nodes. It excludes time that
-//! the sim itself lost because it was suspended or had no processor.
+//! Working time of a sim, in which it measures the patience with other nodes. It excludes time that
+//! the sim lost because it was suspended or had no processor.
 
 use std::time::{Duration, Instant};
 
-/// A cycle of the sim that takes longer than this counts as an interruption.
+/// Duration of a cycle of the sim above which it counts as an interruption.
 const TURN_MAX: Duration = Duration::from_secs(1);
 /// How long lost links have to return after an interruption, during which patience does not count.
 /// zenoh waits at most four seconds between two attempts to connect.
@@ -34,8 +34,8 @@ impl WorkingTime {
         self.looked = now;
         if passed.saturating_sub(waited) > TURN_MAX {
             // Ten seconds more: zenoh drops links after ten seconds of silence, and they must be
-            // reopened. A shorter lease would detect broken links sooner but drop suspended ones as
-            // well.
+            // reopened. A shorter lease would detect broken links sooner, but also drop suspended
+            // ones.
             self.recovery = RECOVERY;
             return;
         }

@@ -26,7 +26,7 @@ pub fn range_hz(tp_s: f64) -> (f64, f64) {
 }
 
 impl WaveField {
-    /// Divides `range_hz` into `count` equal bands. A component outside the range counts in the
+    /// Divides `range_hz` into `count` equal bands. A component outside the range is added to the
     /// nearest band, so that the variances add up to that of the sea.
     pub fn bands(&self, range_hz: (f64, f64), count: usize) -> Vec<Band> {
         let width_hz = (range_hz.1 - range_hz.0) / count as f64;
@@ -39,7 +39,7 @@ impl WaveField {
         for component in self.components() {
             // A frequency below the range, or NaN, becomes 0.
             let place = ((component.omega_rad_s / TAU - range_hz.0) / width_hz) as usize;
-            // The last band includes everything above the range.
+            // The last band includes all components above the range.
             bands[place.min(count - 1)].variance_m2 +=
                 0.5 * component.amplitude_m * component.amplitude_m;
         }

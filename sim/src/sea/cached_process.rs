@@ -15,7 +15,7 @@ pub(super) struct CachedProcess {
     trail: Trail,
     /// Point i is stored at i modulo the length, which is a power of two.
     ring: Vec<Pair>,
-    /// The cached points: first (included) to last (excluded).
+    /// The cached points: first (inclusive) to last (exclusive).
     held: (i64, i64),
 }
 
@@ -24,7 +24,7 @@ impl CachedProcess {
     pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
         let correlation = GaussMarkov::neighbour_correlation();
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
-        // A power of two, so that a slot is a mask rather than a division.
+        // A power of two, so that finding a slot takes a mask rather than a division.
         let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
         CachedProcess {
             process,
@@ -62,8 +62,8 @@ impl CachedProcess {
         let weight = place - floor;
         let (low, high) = self.neighbours(index);
         let product = 2.0 * weight * (1.0 - weight);
-        // Between two correlated numbers, linear interpolation has less variance; uncorrected,
-        // gusts would be weaker between grid points.
+        // Between two correlated numbers, linear interpolation has less variance: without a
+        // correction, gusts would be weaker there.
         let deviation = (1.0 - product * (1.0 - self.correlation)).sqrt();
         let between = |low: f64, high: f64| (low + weight * (high - low)) / deviation;
         (between(low.0, high.0), between(low.1, high.1))
@@ -75,7 +75,7 @@ impl CachedProcess {
         if self.held.0 <= index && index + 1 < self.held.1 {
             return (self.ring[self.slot(index)], self.ring[self.slot(index + 1)]);
         }
-        // The path to the second point is mostly that to the first.
+        // Most of the path to the second point is the path to the first.
         let mut trail = Trail::default();
         (
             self.process.at(index, &mut trail),

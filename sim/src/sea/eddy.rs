@@ -10,7 +10,7 @@ use scenario::sea::{Eddy, RandomEddies};
 
 /// The root of e^α = 1 + 2 α other than 0.
 pub const ALPHA: f64 = 1.256_431_208_626_169_7;
-/// Beyond this s, e^−s is less than half the last bit of 1.
+/// Value of s beyond which e^−s is less than half the last bit of 1.
 const FAR: f64 = 40.0;
 
 /// An eddy with precomputed constants.
@@ -76,7 +76,7 @@ pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
         let across_m = stream.between(0.0, field.plan.depth_m);
         let radius_m = stream.between(random.radius_m.0, random.radius_m.1);
         let peak_m_s = stream.between(random.peak_m_s.0, random.peak_m_s.1);
-        // All numbers of an eddy are drawn, even from a range with a single value, so that fixing a
+        // Draw all numbers of an eddy, even from a range with a single value, so that fixing a
         // value does not move the next eddy.
         let sense = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
         Eddy {

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! This is the Gauss-Markov process conditioned on both (Lévy's bridge, for this process). A world
-//! reset to any tick therefore finds the same bits, whatever was read before.
+//! reset to any tick therefore computes the same bits, whatever was read before.
 //!
 //! If another seed takes over after a point k, the process continues from there. With x from the
 //! previous seed and y from the new one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k.
@@ -55,11 +55,11 @@ struct Later {
     above: Pair,
 }
 
-/// The points on the path to the last look-up, which make the next one cheap without changing
+/// The points on the path to the last look-up, which make the next one cheap without affecting
 /// results.
 #[derive(Clone, Debug)]
 pub(super) struct Trail {
-    /// The index of the noise to which they belong.
+    /// The index of the noise to which the points belong.
     of: usize,
     points: [(i64, Pair); LEVELS + 2],
 }
@@ -83,12 +83,12 @@ impl Trail {
 }
 
 impl GaussMarkov {
-    /// The process `name` of this game. `place` is the farthest grid position read at a given time:
-    /// a seed that ends then applies up to there.
+    /// The process `name` of this game. `place` is the farthest grid position read by a given time:
+    /// a seed that ends then applies up to that position.
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
-            // Once per level, so that a look-up needs no transcendental function except the noise's
+            // Once per level, so that the only transcendental function in a look-up is the noise's
             // logarithm.
             let rho = libm::exp(-apart);
             (
@@ -150,8 +150,8 @@ impl GaussMarkov {
     fn of_noise(&self, noise: Noise, index: i64, trail: &mut Trail) -> Pair {
         let draw = |index: i64| noise.normal_pair((COUNT_OF_POINT_ZERO + index) as u64);
         let block = index.div_euclid(BLOCK);
-        // The ends of blocks alternate, so that the end of one is still known as the start of the
-        // next.
+        // The ends of blocks alternate, so that the end of one block is still known as the start of
+        // the next.
         let end = |block: i64| LEVELS + (block & 1) as usize;
         // Neighbours share most of their path: a sequence of points costs about one draw each.
         let mut low = trail.known(end(block), block * BLOCK, || draw(block * BLOCK));
@@ -200,7 +200,7 @@ mod tests {
         const AFTER: i64 = 700;
         let first = GaussMarkov::new(&9.into(), "test", |now| now.as_s());
         let at = |process: &GaussMarkov, index| process.at(index, &mut Trail::default());
-        // Two points after the change and one block later, given the point of the change.
+        // Two points after the change and one a block later, given the point of the change.
         let lags = [1_i64, 40, 60];
         let known = at(&first, AFTER + 1).0;
         let mut sums = [[0.0; 3]; 3];
@@ -306,7 +306,7 @@ mod tests {
                 );
             }
         }
-        // The same only at the seams between blocks: 3900 seams.
+        // The same at the seams between blocks only: 3900 seams.
         let seams = || (1..POINTS as usize / BLOCK as usize).map(|block| block * BLOCK as usize);
         for lag in [1, 8, 32] {
             let got =

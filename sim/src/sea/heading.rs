@@ -1,4 +1,4 @@
-//! A table over the heading with entries every five degrees and linear interpolation.
+//! A table over heading, with entries every five degrees and linear interpolation.
 
 use crate::lanes::{FOLD, Lanes, ROW};
 use std::f64::consts::TAU;
@@ -13,12 +13,12 @@ pub(super) fn of_bin(bin: usize) -> f64 {
     bin as f64 * (TAU / BINS as f64)
 }
 
-/// The heading in bins: the bin below, and the fraction up to the next.
+/// The heading in units of bins: the bin below, and the fraction up to the next.
 #[inline(always)]
 fn place(heading_rad: f64) -> (usize, f64) {
     let bins = heading_rad * (BINS as f64 / TAU);
     let below = bins.floor();
-    // A NaN heading finds bin 0 and gives NaN.
+    // A NaN heading finds bin 0 and yields NaN.
     (
         (below as i64).rem_euclid(BINS as i64) as usize,
         bins - below,

@@ -23,7 +23,7 @@ use scenario::boat::Boat;
 pub struct WaveSample {
     /// Velocity of the water averaged over the hull, and its rate of rotation (m/s, m/s, rad/s).
     pub velocity: Planar,
-    /// Its rate of change at a fixed place (m/s², m/s², rad/s²).
+    /// Rate of change of `velocity` at a fixed place (m/s², m/s², rad/s²).
     pub acceleration: Planar,
     /// Second-order force (N, N, N m), without a moment.
     pub drift_newton: Planar,
@@ -31,7 +31,7 @@ pub struct WaveSample {
 
 /// The waves of a field, averaged over one kind of hull.
 ///
-/// The heading alone determines a component's direction from the bow, so everything beyond products
+/// The heading alone determines a component's direction from the bow, so everything except products
 /// is looked up by heading. The drift force is Newman's approximation,
 ///
 /// ```text
@@ -79,7 +79,7 @@ impl HullWaves {
         HullWaves::of(field, boat, water_density_kg_m3, &Patches::new(field, boat))
     }
 
-    /// The same, with averaged waves that are already known.
+    /// The same, given averaged waves.
     pub(super) fn of(
         field: &WaveField,
         boat: &Boat,
@@ -180,8 +180,8 @@ impl HullWaves {
             .zip(lines.as_chunks::<FOLD>().0)
             .enumerate()
         {
-            // At the boat's position, which produces the frequency of encounter. Adding that
-            // explicitly would combine it with a wrong wave number.
+            // At the boat's position, which yields the frequency of encounter. Adding it explicitly
+            // would combine it with a wrong wave number.
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
             for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
                 let line = line.at_fraction(fraction);

@@ -1,6 +1,6 @@
 //! The sea: the effects of waves, wind and current on a boat at a position and time.
 //!
-//! Start with [`SeaNow::forcing`], the only place where the sea acts on boats. Everything here is a
+//! Start with [`SeaNow::forcing`], the only place where the sea acts on boats. The sea is a
 //! function of scenario, seed and time. The sea has no memory, so a world reset to an earlier time
 //! finds the same sea.
 
@@ -80,7 +80,7 @@ struct Kind {
     /// Index into the shapes, if there are waves.
     shape: usize,
     windage: Windage,
-    /// The mean wind at the height of its windage, m/s.
+    /// The mean wind at the height of the boat's windage, m/s.
     wind_mean_m_s: f64,
     /// Index into the submergences, if its propellers ventilate.
     submergence: Option<usize>,
@@ -92,7 +92,7 @@ pub struct SeaNow<'a> {
     model: &'a SeaModel,
     current: CurrentNow<'a>,
     now: SimTime,
-    /// The time half a tick later, s, at which waves are evaluated.
+    /// The time half a tick later, at which waves are evaluated, s.
     middle_s: f64,
 }
 
@@ -164,8 +164,8 @@ impl SeaModel {
         };
         // Boats whose propellers never draw air do not incur this cost.
         thruster.flaws.ventilation?;
-        // By size, not by name: tables dominate the time to create a game, and strategies often
-        // differ where hulls do not.
+        // By size, not by name: the tables dominate the time to create a game, and boats with
+        // different strategies often have the same hull.
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
@@ -199,7 +199,7 @@ impl SeaModel {
         )
     }
 
-    /// Computes waves with these instructions. The choice affects only the speed.
+    /// Computes waves with these instructions. The choice affects only speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.waves = self
             .waves
@@ -212,7 +212,7 @@ impl SeaModel {
         }
     }
 
-    /// Caches what is needed at `now`. Affects only the speed, not a single bit of the results.
+    /// Caches the values needed at `now`. Affects only speed, not a single bit of the results.
     pub fn prepare(&mut self, now: SimTime) {
         self.current.prepare(now);
         if let Some(wind) = &mut self.wind {
@@ -220,7 +220,7 @@ impl SeaModel {
         }
     }
 
-    /// Whether the water moves alike everywhere.
+    /// Whether the water moves in the same way everywhere.
     #[inline]
     pub fn is_uniform(&self) -> bool {
         self.waves.is_none() && self.current.is_uniform()
@@ -289,8 +289,8 @@ impl SeaNow<'_> {
         let half_s = self.model.half_s;
         let shape = &self.model.shapes[boat.shape].1;
         let velocity_m_s = nu.in_ned(rotation);
-        // Once, in the middle of the tick: the rate of change is known there too, and three
-        // evaluations would triple the largest part of a tick.
+        // Once, in the middle of the tick: the rate of change is also known there, and three
+        // evaluations would triple the largest cost of a tick.
         let middle = Pose {
             at: pose.at + velocity_m_s.scaled(half_s),
             psi_rad: pose.psi_rad + half_s * nu.yaw,
@@ -328,7 +328,7 @@ impl SeaNow<'_> {
         }
     }
 
-    /// The current at a place, m/s, which carries a point boat along.
+    /// The current at a place, which carries a point boat along, m/s.
     pub fn current_at(&self, at: Ned) -> Ned {
         self.current.at(at)
     }
@@ -350,7 +350,7 @@ impl SeaNow<'_> {
         })
     }
 
-    /// The present attitude of a boat of this kind in the waves.
+    /// The current attitude of a boat of this kind in the waves.
     pub fn attitude(&self, kind: usize, pose: Pose, rotation: Rotation, nu: Planar) -> Attitude {
         if self.model.waves.is_none() {
             return Attitude::default();

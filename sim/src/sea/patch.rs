@@ -1,7 +1,7 @@
 //! Plane waves averaged over a rectangle, length by beam.
 //!
-//! All effects of waves on a hull derive from this, for each wave and each heading of a table,
-//! computed once.
+//! All effects of waves on a hull derive from this average, computed once for each wave and each
+//! heading of a table.
 
 use super::heading::{self, BINS};
 use super::wave::{PlaneWave, WaveField};

@@ -25,7 +25,7 @@ const SIN: [f32; 5] = [
     0.077_220_13,
 ];
 
-/// cos π r = C0 + C1 r² + ..., likewise: error at most 4.7e-8.
+/// cos π r = C0 + C1 r² + ..., in the same way: error at most 4.7e-8.
 const COS: [f32; 5] = [
     0.999_999_95,
     -4.934_793,

@@ -94,7 +94,7 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             .zip(&densities)
             .map(|(x, density)| x * x * density),
     );
-    // By energy alone, only a handful of strata would represent the short waves, which make the
+    // With energy alone, only a handful of strata would represent the short waves, which cause the
     // slopes.
     let both = Curve {
         x: energy.x,
@@ -105,8 +105,8 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let spread = spread(waves.spreading);
     let first_quantile = stream.unit();
 
-    // The renormalisation replaces the variance outside the band. With amplitudes straight from the
-    // density, Hs has an error of up to 6 % for 16 to 64 components.
+    // The renormalisation replaces the variance outside the band. With amplitudes taken directly
+    // from the density, Hs has an error of up to 6 % for 16 to 64 components.
     let variance_m2 = waves.hs_m * waves.hs_m / 16.0;
     let mut below = 0.0;
     (0..count)
@@ -182,7 +182,7 @@ impl Curve {
         Curve { x, up_to }
     }
 
-    /// The quantile of `share`.
+    /// The quantile for `share`.
     fn at(&self, share: f64) -> f64 {
         let i = self
             .up_to

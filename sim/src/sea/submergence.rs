@@ -21,7 +21,7 @@ impl Submergence {
         Submergence::of(field, boat, places, &Patches::new(field, boat))
     }
 
-    /// The same, with averaged waves that are already known.
+    /// The same, given averaged waves.
     pub(super) fn of(
         field: &WaveField,
         boat: &Boat,
@@ -39,7 +39,7 @@ impl Submergence {
                 places.map(|place| libm::sincos(wave.further_rad(place, patch)))
             })
         };
-        // On the opposite heading a wave's delay at a place becomes an equal lead.
+        // On the opposite heading, a wave's delay at a place becomes an equal lead.
         let phases: Vec<[(f64, f64); 2]> = (0..BINS / 2).flat_map(further).collect();
         let change = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else {

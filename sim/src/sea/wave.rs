@@ -1,7 +1,7 @@
 //! A wave field: a sum of plane waves with separate heights, frequencies and directions.
 //!
 //! Linear (Airy) theory: elevation a cos θ with θ = k·x − ω t + φ and ω² = g k tanh k h. A moving
-//! boat encounters it at the frequency ω − k·V, simply because the field is evaluated at its
+//! boat encounters it at the frequency ω − k·V, because the field is evaluated at the boat's
 //! position. The effects on a hull are in [`HullWaves`](super::HullWaves).
 
 use super::sine::sin_cos_turns;
@@ -21,7 +21,7 @@ pub struct Component {
     pub amplitude_m: f64,
     /// Angular frequency at a fixed place, rad/s.
     pub omega_rad_s: f64,
-    /// Compass bearing of its travel.
+    /// Compass bearing towards which it travels.
     pub toward_rad: f64,
     /// Phase at the datum at the start of the game; 0 is a crest.
     pub phase_rad: f64,
@@ -31,7 +31,7 @@ pub struct Component {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneWave {
     pub(super) component: Component,
-    /// Unit vector of its travel.
+    /// Unit vector of the direction of travel.
     pub(super) toward: Ned,
     pub(super) wavenumber_rad_m: f64,
     depth_m: f64,
@@ -56,7 +56,7 @@ impl PlaneWave {
 
     /// Horizontal orbital velocity at a depth, over a ω: cosh k(z + h) / sinh k h.
     pub(super) fn orbital_at(&self, below_m: f64) -> f64 {
-        // With decaying exponentials, because sinh and cosh overflow in deep water.
+        // Use decaying exponentials, because sinh and cosh overflow in deep water.
         self.decay_at(below_m) / (1.0 - libm::exp(-2.0 * self.depth_rad()))
     }
 
@@ -74,10 +74,10 @@ impl PlaneWave {
     }
 
     /// Twice the ratio of group speed to phase speed, 1 + 2kh / sinh 2kh: 1 in deep water, 2 in
-    /// shallow.
+    /// shallow water.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
-        // Beyond this the quotient is 0 to the last bit, and soon afterwards the hyperbolic sine
+        // Beyond this the quotient is 0 to the last bit, and slightly beyond, the hyperbolic sine
         // overflows.
         if twice > 40.0 {
             1.0
@@ -86,7 +86,7 @@ impl PlaneWave {
         }
     }
 
-    /// Stokes drift, averaged over a draught, m/s.
+    /// Stokes drift averaged over a draught, m/s.
     fn stokes_m_s(&self, draught_m: f64) -> f64 {
         let k = self.wavenumber_rad_m;
         let draught_m = draught_m.min(self.depth_m);
@@ -273,7 +273,7 @@ impl WaveField {
 
     /// The field of these components: a regular wave, or a sea measured elsewhere.
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
-        // Infinite rather than merely large: every formula above has its limit there and needs no
+        // Infinite rather than merely large: every formula above has a limit there and needs no
         // special case.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components
@@ -290,7 +290,7 @@ impl WaveField {
     }
 
     /// The same field, computed with these instructions, as is everything built from it. The choice
-    /// affects only the speed.
+    /// affects only speed.
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField {
             instructions,
@@ -331,7 +331,7 @@ impl WaveField {
         }
     }
 
-    /// Significant wave height, m: four standard deviations of the elevation.
+    /// Significant wave height: four standard deviations of the elevation, m.
     pub fn hs_m(&self) -> f64 {
         4.0 * self.mean(|_| 1.0).sqrt()
     }
@@ -366,9 +366,9 @@ impl WaveField {
         self.drift_m_s(|w| w.stokes_m_s(draught_m))
     }
 
-    /// The part due to faster water where it has risen: a² ω k sinh² k(z + h) / (2 sinh² k h), half
-    /// of it in deep water. A body that moves to and fro with the water experiences the other part
-    /// by itself.
+    /// The part of Stokes drift caused by faster water where it has risen: a² ω k sinh² k(z + h) /
+    /// (2 sinh² k h), in deep water half of the total. A body that moves with the oscillating water
+    /// experiences the other part anyway.
     pub fn rise_drift_m_s(&self, draught_m: f64) -> Ned {
         // cosh 2x = 2 sinh² x + 1.
         self.drift_m_s(|w| {

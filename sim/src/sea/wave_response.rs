@@ -17,8 +17,8 @@ pub(super) const HEAVE: (f64, f64) = (7.5, 0.3);
 pub(super) const ROLL: (f64, f64) = (7.4, 0.2);
 pub(super) const PITCH: (f64, f64) = (8.6, 0.4);
 
-/// Heave, roll and pitch of a hull, and their rates. Angles are as in NED: roll is positive with
-/// the starboard side down, pitch with the bow up. Heave is the height above the position at rest.
+/// Heave, roll and pitch of a hull, and their rates. Angles as in NED: roll is positive with the
+/// starboard side down, pitch with the bow up. Heave is the height above the position at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attitude {
     /// Height, m.
@@ -124,7 +124,7 @@ impl WaveResponse {
         WaveResponse::of(field, boat, &Patches::new(field, boat))
     }
 
-    /// The same, with averaged waves that are already known.
+    /// The same, given averaged waves.
     pub(super) fn of(field: &WaveField, boat: &Boat, patches: &Patches) -> WaveResponse {
         // Waves that are short compared with the draught have little effect: the hull follows the
         // pressure at its keel, not the surface.

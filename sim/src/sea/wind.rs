@@ -19,7 +19,7 @@ use scenario::sea::{Gusts, Wind};
 
 /// Minimum speed at which gusts travel, m/s.
 pub const CARRY_MIN_M_S: f64 = 1.0;
-/// Margin around the field within which gusts are cached, m; beyond it they are computed more
+/// Margin around the field within which gusts are cached, m. Beyond it they are computed more
 /// slowly.
 const MARGIN_M: f64 = 50.0;
 
@@ -63,7 +63,7 @@ impl WindField {
             profile_exponent: wind.profile_exponent,
             gusts: None,
         };
-        // At the highest boat: the pattern has a single speed, or boats would disagree about the
+        // At the highest boat: the pattern needs a single speed, or boats would disagree about the
         // time of a gust.
         let carry_m_s = made.mean_m_s(reference_height_m).max(CARRY_MIN_M_S);
         let along_m = field.corners.map(|corner| corner.dot(downwind));
@@ -80,7 +80,7 @@ impl WindField {
             } => {
                 let steps_per_m = STEPS_PER_LENGTH / length_m;
                 let steps_per_s = steps_per_m * carry_m_s;
-                // No redrawn gust has reached the field: they are all upwind of it.
+                // No redrawn gust has reached the field yet: they are all upwind of it.
                 let process = GaussMarkov::new(seeds, "gust", |now| {
                     place((steps_per_s, steps_per_m), reach_m.0, now)
                 });
@@ -96,14 +96,14 @@ impl WindField {
         made
     }
 
-    /// The mean speed at a height above the water, m/s: U10 (z / 10 m)^α. Called once per boat,
+    /// The mean speed (m/s) at a height above the water: U10 (z / 10 m)^α. Called once per boat,
     /// when the world is created.
     pub fn mean_m_s(&self, height_m: f64) -> f64 {
         self.speed_10m_m_s * libm::pow(height_m / 10.0, self.profile_exponent)
     }
 
-    /// Caches the gusts over the field at `now`. Affects only the speed: [`WindField::at`] gives
-    /// the same bits without it.
+    /// Caches the gusts over the field at `now`. Affects only speed: [`WindField::at`] gives the
+    /// same bits without it.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some(gusts) = &mut self.gusts {
             let (near_m, far_m) = gusts.reach_m;
@@ -113,14 +113,14 @@ impl WindField {
         }
     }
 
-    /// The air's velocity over the ground, m/s, at a place with the mean speed `mean_m_s` (from
+    /// The air's velocity over the ground (m/s) at a place with the mean speed `mean_m_s` (from
     /// [`WindField::mean_m_s`]).
     #[inline]
     pub fn at(&self, place: Ned, mean_m_s: f64, now: SimTime) -> Ned {
         let Some(gusts) = &self.gusts else {
             return self.downwind.scaled(mean_m_s);
         };
-        // Two processes, along and across: gusts change the direction as well.
+        // Two processes, along and across: gusts also change the wind direction.
         let (along, across) = gusts.process.at(gusts.place(place.dot(self.downwind), now));
         self.downwind
             .scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))

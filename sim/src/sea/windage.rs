@@ -19,7 +19,7 @@ use scenario::boat::Windage;
 /// Density of air at 15 °C and sea level, kg/m³.
 const AIR_DENSITY_KG_M3: f64 = 1.225;
 
-/// The air's velocity past a boat in body axes, m/s, from the wind over the ground.
+/// The air's velocity past a boat, in body axes, from the wind over the ground, m/s.
 #[inline]
 pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
     let wind = body_from_ned(rotation, wind_m_s);
@@ -29,7 +29,7 @@ pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
     }
 }
 
-/// The force on a hull of `length_m`, N and N m, for this air velocity in body axes, m/s.
+/// The force (N, N, N m) on a hull of `length_m` for this air velocity (m/s) in body axes.
 #[inline]
 pub fn wind_force(windage: &Windage, length_m: f64, past: Body) -> Planar {
     let Body {
@@ -37,7 +37,7 @@ pub fn wind_force(windage: &Windage, length_m: f64, past: Body) -> Planar {
         starboard: s,
     } = past;
     let half_rho = 0.5 * AIR_DENSITY_KG_M3;
-    // Relative to the boat and in its axes. VRX applies the wind component by component in world
+    // Relative to the boat, and in its axes. VRX applies the wind component by component in world
     // axes, which makes the force depend on the compass heading.
     let speed_m_s = (a * a + s * s).sqrt();
     Planar {

@@ -14,7 +14,7 @@ use scenario::sensor::{Gps, Outage};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Maximum number of fixes in transit, and maximum latency in periods. A file may specify 12
+/// Maximum number of fixes in transit, and maximum latency in periods. A file may specify up to 12
 /// periods; rounded to whole decisions, the same time can be 18.
 pub const UNDER_WAY_MAX: usize = 18;
 /// Pairs of normal numbers per fix: bias, position, velocity, jump.
@@ -49,7 +49,7 @@ pub struct GpsModel {
     /// Probability of a jump per fix.
     jump_chance: f64,
     jump_m: f64,
-    /// Its fault spans in this game, besides its own drop-outs and freezes.
+    /// The receiver's fault spans in this game, besides its own drop-outs and freezes.
     faults: Vec<FaultSpan>,
 }
 
@@ -60,9 +60,9 @@ pub struct GpsState {
     latest: Fix,
     /// Fixes taken but not yet delivered, oldest first.
     under_way: VecDeque<Fix>,
-    /// Position bias, m, by axis.
+    /// Position bias by axis, m.
     bias: Ned,
-    /// Position jump, m, by axis.
+    /// Position jump by axis, m.
     jump: Ned,
     dropped: bool,
     /// The fix delivered while the receiver is frozen.
@@ -77,7 +77,7 @@ fn chain(outage: Outage, period: SimTime) -> TwoStateChain {
 }
 
 impl GpsModel {
-    /// The receiver of the boat named `vehicle`, read once per `tick`, with these faults. Its
+    /// The receiver of the boat named `vehicle`, read once per `tick`, with the given faults. Its
     /// period is a whole number of ticks.
     ///
     /// # Panics
@@ -128,8 +128,8 @@ impl GpsModel {
             .find(|span| span.kind == kind && span.is_on(now))
     }
 
-    /// The last fix delivered by `now`. The receiver has been on since before the game: the fix of
-    /// time 0 is available at once, and there are no faults initially.
+    /// The last fix delivered by `now`. The receiver was on before the game: the fix of time 0 is
+    /// available at once, and there are no faults initially.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
         // Delivery frees space for the new fix.
         while let Some(fix) = state
@@ -173,14 +173,14 @@ impl GpsModel {
         if number > 0 {
             state.dropped = self.dropout.next(state.dropped, uniform(0));
             if uniform(2) < self.jump_chance {
-                // It persists until the next one, as after a change of satellites.
+                // A jump persists until the next one, as after a change of satellites.
                 state.jump = normal(3, self.jump_m);
             }
         }
         let mut measured = Fix {
             at: now,
             position: truth.pose.at + state.bias + state.jump + normal(1, self.noise_m),
-            // By Doppler shift: much better than differences of the noisy position.
+            // Measured by Doppler shift: much better than differences of the noisy position.
             velocity_m_s: truth.velocity_m_s() + normal(2, self.velocity_noise_m_s),
         };
         if let Some(span) = self.fault(FaultKind::GpsOffset, now) {

@@ -8,7 +8,7 @@
 //! accelerometers:  f = R(φ, θ, ψ)ᵀ (a − g),  g downwards: a boat at rest reads −g down, the water's push
 //! ```
 //!
-//! each with white noise and a wandering bias (Gauss-Markov). The accelerometers are midships.
+//! each with white noise and a wandering bias (Gauss-Markov). The accelerometers are amidships.
 
 use super::truth::{GaussMarkovStep, Truth};
 use messages::picture;
@@ -26,7 +26,7 @@ const PAIRS: u64 = 6;
 pub struct ImuReading {
     /// Rates about the axes ahead, to starboard and down, rad/s.
     pub gyro_rad_s: [f64; 3],
-    /// Specific force along them, m/s².
+    /// Specific force along these axes, m/s².
     pub accelerometer_m_s2: [f64; 3],
 }
 
@@ -39,7 +39,7 @@ pub struct ImuModel {
     bias_step: GaussMarkovStep,
 }
 
-/// Their changing state.
+/// The changing state of gyro and accelerometers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImuState {
     bias: ImuReading,
@@ -119,8 +119,8 @@ impl ImuModel {
         let mut reading = ImuReading::of(truth);
         for axis in 0..3 {
             let (noise, step) = drawn.normal_pair(PAIRS * number + axis as u64);
-            // A random bias that wanders slowly makes integrated rates diverge, which white noise
-            // alone would hide.
+            // A slowly wandering bias makes integrated rates diverge, which white noise alone would
+            // hide.
             let bias = &mut state.bias.gyro_rad_s[axis];
             *bias = kept * *bias + fresh * imu.gyro_bias_rad_s * step;
             reading.gyro_rad_s[axis] += *bias + imu.gyro_noise_rad_s * noise;

@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
     /// Navigation: position and velocity of the last fix, with the velocity converted to body axes
-    /// by the present compass heading.
+    /// by the current compass heading.
     pub nav: Nav,
     /// Time of the last fix.
     pub fix_at: SimTime,
@@ -52,7 +52,7 @@ pub struct SensorState {
 }
 
 impl SensorState {
-    /// The compass error at its last reading, rad, by which the front seat steers wrong.
+    /// The compass error at its last reading, by which the front seat steers off course, rad.
     pub fn heading_error_rad(&self) -> f64 {
         self.compass.error_rad
     }
@@ -111,7 +111,7 @@ impl SensorModel {
                 )
             }
         };
-        // Without an inertial unit the true rate is used: an omitted sensor is perfect.
+        // Without an inertial unit, use the true rate: an omitted sensor is perfect.
         let yaw_rate_rad_s = if self.imu.is_some() {
             imu.gyro_rad_s[2]
         } else {

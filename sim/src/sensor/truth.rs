@@ -1,4 +1,4 @@
-//! What sensors measure, and what they share in measuring it.
+//! The quantities that sensors measure, and the code that they share.
 
 use crate::hull::Planar;
 use crate::sea::Attitude;
@@ -17,7 +17,7 @@ pub struct Truth {
     pub nu_dot: Planar,
     /// Attitude in the waves.
     pub attitude: Attitude,
-    /// The thrusters' current as a fraction of that at full thrust of both.
+    /// The thrusters' current as a fraction of the current with both at full thrust.
     pub thrust_share: f64,
 }
 
@@ -28,7 +28,7 @@ impl Truth {
     }
 }
 
-/// `period_s` as a whole number of ticks, at least one, because sensors are read at ticks.
+/// `period_s` as a whole number of ticks, at least one, since sensors are read at ticks.
 pub(super) fn whole_ticks(period_s: f64, tick: SimTime) -> SimTime {
     let ticks = (period_s / tick.as_s()).round() as i64;
     tick * ticks.max(1)
@@ -44,7 +44,7 @@ pub(super) struct GaussMarkovStep {
 }
 
 impl GaussMarkovStep {
-    /// The very first step, without memory.
+    /// The very first step, which has no memory.
     pub(super) const FIRST: GaussMarkovStep = GaussMarkovStep {
         kept: 0.0,
         fresh: 1.0,

@@ -1,5 +1,5 @@
-//! The games behind a report. A game is played when a page requests it, into a temporary recording,
-//! unless a recording exists.
+//! The games behind a report. If there is no recording of a game, it is played into a temporary one
+//! when a page requests it.
 
 use crate::in_process;
 use crate::network::replay_command;
@@ -15,18 +15,18 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tempfile::TempDir;
 
-/// Maximum number of open games; beyond it, an unused game is closed to make room.
+/// Maximum number of open games; an unused game is closed to make room for more.
 const OPEN_MAX: usize = 8;
 /// Maximum number of games being played at the same time.
 const PLAYED_MAX: usize = 2;
-/// Interval of progress messages to a page, decisions.
+/// Number of decisions between progress messages to a page.
 const TELL_EVERY: u64 = 100;
 
 /// The source of a game.
 pub(super) enum Source {
     /// An existing recording.
     Recorded(PathBuf),
-    /// The game is played again; `digest` is the expected result, if the report has it.
+    /// The game is played again; `digest` is the expected result, if the report contains it.
     Played {
         scenario: Box<Scenario>,
         seed: u64,
@@ -62,7 +62,7 @@ struct Open {
 
 impl Drop for Open {
     fn drop(&mut self) {
-        // No file exists if the game had been recorded before or could not be played.
+        // No file exists if the game had already been recorded, or could not be played.
         drop(std::fs::remove_file(&self.file));
     }
 }
@@ -71,7 +71,7 @@ impl Games {
     pub(super) fn new(stop: &Arc<AtomicBool>) -> Result<Games> {
         let folder = TempDir::with_prefix("squall-view-")
             .context("cannot create a folder for the recordings of games")?;
-        // A game that panics is reported by its thread, and must not end the others.
+        // A game that panics is reported by its thread, and must not end other games.
         let players = ThreadPoolBuilder::new()
             .num_threads(PLAYED_MAX)
             .panic_handler(drop)
@@ -132,7 +132,7 @@ impl Games {
     }
 }
 
-/// Plays a game unless it is recorded, and opens its recording.
+/// Plays a game unless it has been recorded, and opens its recording.
 fn prepare(
     game: &Game,
     file: &Path,

@@ -147,7 +147,7 @@ impl Report for TournamentReport {
     }
 }
 
-/// The request path for the games of a point; the point's number follows.
+/// The request path for the games of a point, followed by the point's number.
 const GAMES_OF_POINT: &str = "/sweep_games/";
 /// Maximum number of listed games of a point.
 const LISTED_MAX: usize = 10_000;
@@ -156,7 +156,7 @@ const LISTED_MAX: usize = 10_000;
 struct SweepReport {
     json: Vec<u8>,
     plan: Result<sweep::Plan, String>,
-    /// The results from the table beside the report, in game order.
+    /// The results from the table next to the report, in game order.
     rows: Result<Vec<sweep::Row>, String>,
     /// The digests of the worst games in the report, used if there is no table.
     digests: BTreeMap<usize, String>,
@@ -205,7 +205,7 @@ impl SweepReport {
         })
     }
 
-    /// The result of a game, if the table has it.
+    /// The result of a game, if the table contains it.
     fn row(&self, index: usize) -> Option<&sweep::Row> {
         self.rows.as_ref().ok()?.get(index)
     }

@@ -9,9 +9,9 @@ use shore::page::{Report, Shown};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// Maximum points of a curve: more would not be visible.
+/// Maximum number of points of a curve; more would not be visible.
 const POINTS_MAX: usize = 1000;
-/// Maximum number of listed episodes: the newest.
+/// Maximum number of listed episodes, the newest.
 const EPISODES_MAX: usize = 1000;
 /// Columns of an update besides its samples and stage.
 const UPDATES: [&str; 8] = [
@@ -33,11 +33,12 @@ const EVALUATIONS: [&str; 6] = [
     "points_against",
     "left_field",
 ];
-/// Columns that runs of earlier versions lack.
+/// Columns that are missing in runs of earlier versions.
 const NEWER: [&str; 2] = ["explained_variance", "best"];
 const EPISODES: [&str; 3] = ["points", "points_against", "steps"];
 
-/// The request path for another run in the same folder; its name in hexadecimal digits follows.
+/// The request path for a different run in the same folder, followed by its name in hexadecimal
+/// digits.
 const OTHER_RUN: &str = "/training_run/";
 /// Maximum number of other runs listed.
 const RUNS_MAX: usize = 500;
@@ -52,7 +53,7 @@ pub(super) struct TrainingReport {
 struct Run {
     folder: PathBuf,
     name: String,
-    /// The best policy's strategy, for a command line.
+    /// The strategy of the best policy, for a command line.
     strategy: String,
 }
 
@@ -112,7 +113,7 @@ impl TrainingReport {
 }
 
 impl Run {
-    /// The run in a folder; commands call the folder `shown`.
+    /// The run in a folder, which is called `shown` in commands.
     fn of(folder: PathBuf, shown: &Path) -> Run {
         let name = folder
             .file_name()
@@ -194,11 +195,11 @@ impl Run {
         }))
     }
 
-    /// The complete rows of a table: texts, and numbers (null for an empty cell).
+    /// The complete rows of a table, with strings and numbers (null for an empty cell).
     fn table(&self, name: &str, texts: &[&str], numbers: &[&str]) -> Result<Vec<Value>> {
         let path = self.folder.join(name);
         let bytes = read(&path)?;
-        // The last line may be incomplete while it is being written.
+        // The last line may be incomplete while being written.
         let whole = bytes
             .iter()
             .rposition(|byte| *byte == b'\n')
@@ -256,7 +257,7 @@ impl Run {
     }
 }
 
-/// At most about [`POINTS_MAX`] rows, with the last one.
+/// At most about [`POINTS_MAX`] rows, including the last one.
 fn thinned(rows: Vec<Value>) -> Vec<Value> {
     let step = rows.len().div_ceil(POINTS_MAX).max(1);
     let last = rows.len().saturating_sub(1);

@@ -27,7 +27,7 @@ pub(super) fn watch(
         match helm_query::report(observer, vehicle, HelmQuestion { functions: false })? {
             Some(report) => {
                 heard = clock::now();
-                // If output cannot be overwritten, print each decision once.
+                // If output cannot be overwritten, print each decision only once.
                 let is_read = match live {
                     true => screen::is_seen(&helm_page::page(scenario, &report)),
                     false if last.replace(report.at) == Some(report.at) => true,

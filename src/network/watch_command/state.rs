@@ -1,4 +1,4 @@
-//! The state of a game as text: score, boats and events.
+//! The state of a game in text form: score, boats and events.
 
 use super::Rates;
 use crate::style;
@@ -7,7 +7,7 @@ use messages::{Frame, GameInfo, VehicleTruth};
 use primitives::angle::compass_deg_from_rad;
 use scenario::Scenario;
 
-/// One picture of the game.
+/// One view of the game.
 pub(super) fn page(
     info: &GameInfo,
     game: &GameName,
@@ -31,7 +31,7 @@ pub(super) fn page(
     text
 }
 
-/// The state of the game in one line.
+/// The state of the game on one line.
 pub(super) fn line(scenario: &Scenario, frame: &Frame, rates: &Rates) -> String {
     let lost = frame.vehicles.iter().filter(|boat| boat.agent_lost).count();
     let lost = if lost > 0 {

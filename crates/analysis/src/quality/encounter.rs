@@ -8,30 +8,30 @@ use rules::event::{Event, TagCause};
 use scenario::Scenario;
 use serde::Serialize;
 
-/// Time for which a tagger and the boat it tagged keep that relation, s.
+/// How long a tagger and the boat it tagged keep that relation, s.
 const TAG_REMEMBERED_S: f64 = 10.0;
-/// Hysteresis of encounters, m: a bounce stays one encounter.
+/// Hysteresis of encounters, m: boats that bounce off each other have one encounter.
 const APART_M: f64 = 1.0;
 
 /// The relation between two boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Relation {
-    /// Boats of one team.
+    /// Teammates.
     Mate,
     /// Boats of different teams.
     Enemy,
-    /// One tagged the other, no longer than 10 s ago.
+    /// One tagged the other at most 10 s ago.
     TaggerAndTagged,
 }
 
 /// Number of encounters, by relation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Encounters {
-    /// Boats of one team.
+    /// Teammates.
     pub mate: Nearness,
     /// Boats of different teams, except those below.
     pub enemy: Nearness,
-    /// One tagged the other, no longer than 10 s before.
+    /// One tagged the other at most 10 s before.
     pub tagger_and_tagged: Nearness,
 }
 

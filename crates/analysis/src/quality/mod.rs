@@ -23,13 +23,13 @@ use scenario::Scenario;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Threshold of a course jump between consecutive orders, rad.
+/// Smallest course change between consecutive orders that counts as a jump, rad.
 const COURSE_JUMP_RAD: f64 = std::f64::consts::FRAC_PI_4;
-/// Threshold of a speed jump between consecutive orders, m/s.
+/// Smallest speed change between consecutive orders that counts as a jump, m/s.
 const SPEED_JUMP_M_S: f64 = 1.0;
-/// A boat slower than this over the ground is idle, m/s.
+/// Speed over the ground below which a boat is idle, m/s.
 const STANDING_M_S: f64 = 0.2;
-/// A boat closer to an edge than this, or beyond it, is at the edge, m.
+/// Distance from an edge within which a boat counts as at the edge, m.
 const EDGE_M: f64 = 3.0;
 
 /// How sensibly boats played, in one game or in many.
@@ -55,7 +55,7 @@ pub struct StrategyQuality {
     /// Time in which no boat of the team attacked, s: none carried a flag, and none was free beyond
     /// its own side.
     pub nobody_attacks_s: f64,
-    /// Number of encounters of its boats; one between two mates counts once.
+    /// Number of encounters of its boats; one between two teammates counts once.
     pub encounters: Encounters,
     /// Results by role.
     pub roles: BTreeMap<String, RoleQuality>,
@@ -84,7 +84,7 @@ pub struct ModeQuality {
     pub course_jumps: u64,
     /// Ordered speeds more than 1 m/s from the previous one, within the mode.
     pub speed_jumps: u64,
-    /// Time standing still, below 0.2 m/s over the ground, s.
+    /// Time at rest (below 0.2 m/s over the ground), s.
     pub standing_s: f64,
     /// Time within 3 m of an edge or beyond it, s.
     pub edge_s: f64,
@@ -165,12 +165,12 @@ impl GameQuality {
         }
     }
 
-    /// Adds the next step, with the state in which each vehicle's mind gave the order that led
-    /// there, if known.
+    /// Adds the next step. `minds` are the states in which the vehicles' minds gave the orders for
+    /// it, if known.
     pub fn add(&mut self, step: &Step, minds: &[Option<MindState>]) {
         self.encounters.add(step, &mut self.quality);
         // A step covers the time since the previous one. The first covers none, because no order
-        // led there.
+        // preceded it.
         let Some(before_s) = self.before_s.replace(step.time_s) else {
             return;
         };
@@ -244,7 +244,8 @@ impl ModeQuality {
         self.edge_s += if is_at_edge { step_s } else { 0.0 };
     }
 
-    /// Compares a mind's order with the previous one, within a mode: another mode has other aims.
+    /// Compares a mind's order with the previous one, within a mode, because modes have different
+    /// aims.
     fn compare(&mut self, before: Option<&(MindState, Order)>, mind: &MindState, order: Order) {
         let same_mode = before.filter(|(before, _)| before == mind);
         let Some((_, before)) = same_mode else {
@@ -278,7 +279,8 @@ impl ModeQuality {
 }
 
 impl Quality {
-    /// Adds other games. Sums of the same games in the same order are bit-for-bit equal.
+    /// Adds the results of other games. Sums of the same games in the same order are bit-for-bit
+    /// equal.
     pub fn merge(&mut self, other: &Quality) {
         self.games += other.games;
         self.time_s += other.time_s;
@@ -324,7 +326,7 @@ fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
     names
 }
 
-/// Whether a boat attacks: it brings a flag home, or is beyond its own side and free to act.
+/// Whether a boat attacks: it carries a flag home, or is beyond its own side and free to act.
 fn attacks(scenario: &Scenario, team: TeamId, sample: &Sample) -> bool {
     sample.carrying || (sample.is_free && !scenario.field.is_own_side(team, sample.truth.at()))
 }

@@ -9,15 +9,15 @@ use primitives::angle::wrap_pi;
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-/// An orbit lasts longer than this, s.
+/// Minimum duration of an orbit, s.
 pub const ORBIT_MIN_S: f64 = 60.0;
 /// Time between examined positions, s.
 const SPACING_S: f64 = 1.0;
-/// Tolerance of positions from the circle, m, or as a fraction of its radius, whichever is larger.
-/// Waves and gusts move a boat by that much.
+/// Tolerance of positions from the circle: this distance (m), or the same fraction of the radius if
+/// larger. Waves and gusts move a boat by that much.
 const OFF_M: f64 = 1.0;
 const OFF_SHARE: f64 = 0.15;
-/// A boat that stays within this radius is at rest, m.
+/// Radius within which a boat counts as at rest, m.
 const RADIUS_MIN_M: f64 = 1.0;
 
 /// Finds the orbits of one boat.
@@ -74,7 +74,7 @@ impl OrbitDetector {
     }
 }
 
-/// Whether a track is on a circle and completes at least one turn.
+/// Whether a track lies on a circle and completes at least one turn.
 fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
     let Some((centre, radius_m)) = circle(places) else {
         return false;
@@ -96,7 +96,7 @@ fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
     swept_rad.abs() >= TAU
 }
 
-/// The best-fitting circle, as centre and radius, m; none for a straight line.
+/// The best-fitting circle, as centre and radius in m; `None` for a straight line.
 ///
 /// Relative to the mean position, the centre solves two linear equations in the second and third
 /// moments.
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use primitives::math;
 
-    /// Number and duration, s, of the orbits of a boat with these positions, sampled ten times a
+    /// Number and duration (s) of the orbits of a boat with these positions, sampled ten times a
     /// second.
     fn orbits(span_s: f64, at: impl Fn(f64) -> Ned) -> (u64, f64) {
         let mut detector = OrbitDetector::default();

@@ -7,15 +7,15 @@ use primitives::SimTime;
 use rules::event::{Event, Logged, TagCause};
 use std::path::Path;
 
-/// Two blue boats with Pav01's two roles, then two red ones, on the field of 160 m east by 80 m
-/// north of the datum.
+/// Two blue boats with the two roles of Pav01, then two red ones, on a field that extends 160 m
+/// east and 80 m north of the datum.
 fn scenario() -> Scenario {
     let file =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// At rest in the middle of their own half, mates 30 m apart.
+/// At rest in the middle of their own half, teammates 30 m apart.
 fn at_rest(i: usize) -> Sample {
     let nav = Nav {
         north_m: [25.0, 55.0][i % 2],
@@ -173,8 +173,8 @@ fn visit(
 fn encounters_are_told_by_nearness_and_relation() {
     // Surveyors are 0.91 m wide, and less than 3 m is a near miss. The tag is at 8 s.
     let visits = [
-        (10, 0, 1, 0.9),  // mates, touching
-        (30, 0, 1, 1.5),  // mates, near
+        (10, 0, 1, 0.9),  // teammates, touching
+        (30, 0, 1, 1.5),  // teammates, near
         (50, 0, 2, 2.9),  // enemies, near
         (70, 0, 2, 3.1),  // enemies, not so near
         (90, 0, 3, 0.5),  // tagged and tagger, touching
@@ -206,7 +206,7 @@ fn encounters_are_told_by_nearness_and_relation() {
         tagger_and_tagged: nearness(1, 1),
     };
     assert_eq!(got.encounters, want);
-    // Both sides are of the same strategy, and each counts; mates count once.
+    // Both sides have the same strategy, and each counts; an encounter of teammates counts once.
     assert_eq!(
         got.strategies["pav01"].encounters.all(),
         nearness(1 + 2 * 3, 1 + 2 * 2)
@@ -227,7 +227,7 @@ fn one_that_bounces_is_one_encounter_and_an_open_one_counts_at_the_end() {
             near_misses: 0
         }
     );
-    // Two mates of one strategy count once.
+    // An encounter of two teammates with one strategy counts once.
     assert_eq!(
         bounce.strategies["pav01"].encounters.mate,
         Nearness {

@@ -97,7 +97,7 @@ impl Quality {
     }
 }
 
-/// A name padded to its column; a longer name shifts the other columns.
+/// A name padded to the column width; a longer name shifts the other columns.
 fn name(name: &str) -> String {
     format!("{name:<width$} ", width = NAME - 1)
 }

@@ -4,7 +4,7 @@ use primitives::SimTime;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Cell texts, by column name.
+/// Cell contents, by column name.
 pub(super) type Cells = BTreeMap<String, String>;
 
 /// The cells in column order, time first.
@@ -16,7 +16,7 @@ pub(super) fn in_order(mut cells: Cells, at: SimTime, columns: &[String]) -> Vec
     std::iter::once(time(at)).chain(rest).collect()
 }
 
-/// A time in s, with no more digits than needed; empty for times before the game.
+/// A time in s, without superfluous digits; empty for times before the game.
 pub(super) fn time(at: SimTime) -> String {
     if at <= SimTime::LONG_AGO {
         String::new()
@@ -25,13 +25,13 @@ pub(super) fn time(at: SimTime) -> String {
     }
 }
 
-/// A text without quotes; any other value as JSON.
+/// A string without quotes; any other value as JSON.
 pub(super) fn text(leaf: &Value) -> String {
     leaf.as_str()
         .map_or_else(|| leaf.to_string(), str::to_owned)
 }
 
-/// The values inside a value, by path. Nulls are omitted.
+/// The leaves of a value, by path. Nulls are omitted.
 pub(super) fn flat(value: &Value) -> BTreeMap<String, Value> {
     let mut leaves = BTreeMap::new();
     lay("", value, &mut leaves);
@@ -67,7 +67,7 @@ fn lay(path: &str, value: &Value, leaves: &mut BTreeMap<String, Value>) {
     }
 }
 
-/// A list of a name and a number is a named number: counts have this form.
+/// A list of a name and a number is a named number: counts are written in this form.
 fn named(item: &Value) -> Option<(&str, &Value)> {
     match item.as_array()?.as_slice() {
         [Value::String(name), value @ Value::Number(_)] => Some((name, value)),

@@ -14,7 +14,7 @@ use scenario::outcome::EventOutcome;
 use serde::Serialize;
 use serde_json::Value;
 
-/// Columns shared by own boats and contacts; values known for only one of them are empty for the
+/// Columns shared by own boats and contacts; a value known for only one kind is empty for the
 /// other.
 const SEEN: &str = "\
     seq seen vehicle seen_s north_m east_m psi_rad surge_m_s sway_m_s yaw_rate_rad_s \
@@ -24,7 +24,7 @@ const SEEN: &str = "\
 /// The columns of an order.
 const ORDER: &str = "heading_rad speed_m_s port starboard by_rad";
 
-/// The columns for messages of a schema, without the time; none for an unsupported schema.
+/// The columns for messages of a schema, without the time; `None` for an unsupported schema.
 pub(super) fn columns(schema: &str, scenario: &Scenario) -> Option<Vec<String>> {
     let named = |names: &str| names.split(' ').map(str::to_owned).collect::<Vec<String>>();
     let mut columns = named("seq");
@@ -95,7 +95,7 @@ fn fields(definition: &str) -> Vec<String> {
         .collect()
 }
 
-/// The column of a field: times are in s; fields internal to gateway and sim are left out.
+/// The column of a field: times are in s; fields internal to gateway and sim are omitted.
 fn column(path: &str) -> Option<String> {
     let path = path.strip_prefix("nav.").unwrap_or(path);
     match path.strip_suffix("_ns") {
@@ -252,7 +252,7 @@ fn input(record: &InputRecord, scenario: &Scenario) -> Cells {
         _ => Cells::new(),
     };
     let word = match input {
-        // The order's own word names the kind.
+        // The order's own name identifies the kind.
         Some(Input::Ordered { .. }) => cells.remove("order").unwrap_or_default(),
         Some(Input::Pictured) => "pictured".to_owned(),
         Some(Input::Held(_)) => "held".to_owned(),
@@ -302,7 +302,7 @@ fn order(order: Order) -> Cells {
     cells
 }
 
-/// The name of the boat with this number; empty for none.
+/// The name of the boat with this number; empty if there is none.
 fn name(scenario: &Scenario, vehicle: impl TryInto<usize>) -> &str {
     let vehicle = vehicle
         .try_into()
@@ -311,7 +311,7 @@ fn name(scenario: &Scenario, vehicle: impl TryInto<usize>) -> &str {
     vehicle.map_or("", |vehicle| &vehicle.name)
 }
 
-/// A flag as its team's name, with its number if it is not the team's first.
+/// The name of a flag's team, with the flag's number if it is not the team's first.
 fn flag_word(scenario: &Scenario, flag: usize) -> String {
     let flags = &scenario.field.flags;
     let Some(team) = flags.get(flag).map(|flag| flag.team) else {

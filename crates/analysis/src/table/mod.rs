@@ -4,13 +4,13 @@
 //! names of message fields, with boat and team names instead of numbers. Units are those of the
 //! messages, except that times are in s. Missing values are empty cells.
 //!
-//! | topic | a row |
+//! | topic | row |
 //! |---|---|
 //! | `frame` | a decision: all boats, flags, the score, and the events since the last as sentences |
-//! | `picture/<team>` | an own boat or a contact in a picture (`seen` says which) |
+//! | `picture/<team>` | an own boat or a contact in a picture (see column `seen`) |
 //! | `inputs` | one input of the game |
 //! | `say/<team>` | a shared variable of a boat |
-//! | `link/<boat>` | a line on the link, at the time of the piece that ended it |
+//! | `link/<boat>` | a line on the link, at the time of the chunk that completed it |
 //! | `events` | an event of the game (extracted from its frames, not a topic of the file) |
 //! | any other | a message; JSON is flattened, with numbered lists |
 
@@ -46,7 +46,7 @@ pub enum TableError {
         /// The available topics.
         known: Vec<String>,
     },
-    /// Messages of this kind have no table.
+    /// There is no table for messages of this kind.
     #[error("messages of {topic} have the type {schema}, which has no table")]
     Strange {
         /// The topic.
@@ -134,7 +134,7 @@ fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableErr
             .map(|(path, leaf)| (path, cells::text(&leaf)))
             .collect())
     };
-    // The columns are known only after reading everything; the messages are few.
+    // The columns are known only after reading all messages, which are few.
     let mut paths = BTreeSet::new();
     let mut damaged = Damaged::default();
     for message in bag.on(topic) {

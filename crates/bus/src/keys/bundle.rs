@@ -21,13 +21,13 @@ pub struct Bundle {
     pub folder: PathBuf,
     /// The identity in the certificate.
     pub identity: Identity,
-    /// The names and addresses that its certificate covers: those of a sim.
+    /// The names and addresses covered by the certificate, if it is that of a sim.
     pub hosts: Vec<String>,
-    /// The period for which its certificate is valid, from and until, as text.
+    /// The start and end of the certificate's validity, as strings.
     pub valid: [String; 2],
 }
 
-/// A file of a bundle, and what is wrong with it.
+/// A file of a bundle, and its fault.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}: {problem}", file.display())]
 pub struct BundleError {
@@ -56,8 +56,8 @@ impl Bundle {
         let chain = certificates(&path(CERTIFICATE_FILE))?;
         let key = private_key(&path(KEY_FILE))?;
         certificates(&path(AUTHORITY_FILE))?;
-        // zenoh would only report that it cannot open a session. This names the faulty file and its
-        // fault before anything is opened.
+        // zenoh would only report that it cannot open a session. These checks name the faulty file
+        // and its fault before anything is opened.
         CertifiedKey::from_der(chain.clone(), key, &ring::default_provider()).map_err(|e| {
             refused(
                 &path(KEY_FILE),
@@ -76,7 +76,7 @@ impl Bundle {
             .parse()
             .map_err(|e| not_understood(format!("was not made by `squall keys new`: {e}")))?;
         // To its owner, an expired certificate looks like a network failure, since the other side
-        // closes the link silently.
+        // silently closes the link.
         check_period(&certificate, ASN1Time::now()).map_err(not_understood)?;
         let validity = certificate.validity();
         let hosts = hosts(&certificate);
@@ -174,7 +174,7 @@ fn hosts(certificate: &X509Certificate<'_>) -> Vec<String> {
     names.filter_map(host).collect()
 }
 
-/// The bundles in a folder, as text, for a user who specified the parent folder.
+/// The bundles in a folder, listed for a user who specified the parent folder.
 fn bundles_in(folder: &Path) -> String {
     let is_bundle = |name: &String| name.parse::<Identity>().is_ok();
     let names = std::fs::read_dir(folder).into_iter().flatten().flatten();

@@ -1,4 +1,4 @@
-//! Explains why a TLS connection fails: zenoh only reports the failure.
+//! Finds out why a TLS connection fails; zenoh only reports the failure.
 
 use super::{Bundle, Identity};
 use crate::BusError;
@@ -16,11 +16,11 @@ use std::time::Duration;
 
 /// Timeout of each step; short, because this only explains a failure after the fact.
 const STEP: Duration = Duration::from_millis(500);
-/// The record type of a TLS alert, with which a TLS server answers other protocols.
+/// The record type of a TLS alert, which a TLS server sends if it receives a different protocol.
 const ALERT: u8 = 0x15;
 
 /// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not match; `None`
-/// if nothing is listening there or nothing is wrong.
+/// if nothing is listening there or there is no fault.
 pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
     let address = address(endpoint);
@@ -29,15 +29,15 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
         .0
         .trim_start_matches('[')
         .trim_end_matches(']');
-    // zenoh (1.10) only reports that it could not connect. rustls repeats the handshake directly to
-    // learn why.
+    // zenoh (1.10) only reports that it could not connect. Repeat the handshake directly with
+    // rustls to learn the reason.
     let mut stream = connect(address)?;
     let mut tls = match client(host, keys) {
         Ok(tls) => tls,
         Err(problem) => return Some(refused(problem)),
     };
-    // The sim checks our certificate after the handshake has ended on our side: its alert arrives
-    // when we read.
+    // The sim checks our certificate after the handshake has ended on our side, so its alert
+    // arrives when we read.
     let outcome = tls
         .complete_io(&mut stream)
         .and_then(|_| rustls::Stream::new(&mut tls, &mut stream).read(&mut [0; 1]));
@@ -48,7 +48,7 @@ pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
     {
         return Some(refused(explained(error, host, &keys.identity)));
     }
-    // A suspended sim does not answer either, and may resume.
+    // A suspended sim does not answer either, but may resume.
     let reason = "the server there does not use TLS: the game may have no keys".to_owned();
     tls.is_handshaking().then(|| BusError::Open {
         what: format!("connect to {endpoint}"),
@@ -61,7 +61,7 @@ pub(crate) fn is_tls(endpoint: &str) -> bool {
     let asked = || {
         let mut stream = connect(address(endpoint))?;
         let mut answer = [0; 1];
-        // Eight zeros are not a TLS record: a TLS server replies with an alert.
+        // Eight zeros are not a TLS record, so a TLS server replies with an alert.
         stream.write_all(&[0; 8]).ok()?;
         stream.read_exact(&mut answer).ok()?;
         Some(answer[0] == ALERT)
@@ -86,8 +86,8 @@ fn client(host: &str, keys: &Bundle) -> Result<ClientConnection, String> {
     roots.add_parsable_certificates(authority);
     let name = ServerName::try_from(host.to_owned()).map_err(|e| format!("{host:?}: {e}"))?;
     let config = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()))
-        // Like zenoh's own links, which accept nothing older (`zenoh-link-tls` 1.10.2): with other
-        // versions the handshake could fail or succeed for other reasons.
+        // Like zenoh's own links, which accept no older version (`zenoh-link-tls` 1.10.2): with
+        // other versions the handshake could fail or succeed for different reasons.
         .with_protocol_versions(&[&TLS13])
         .and_then(|builder| {
             builder

@@ -13,13 +13,13 @@ pub enum Identity {
     Team(String),
     /// The gateway of this boat, or of any boat.
     Gateway(Option<String>),
-    /// A node that watches, and may stop boats.
+    /// A node that observes and may stop boats.
     Observer,
     /// A node that controls the game and operates boats.
     Operator,
 }
 
-/// A text that is not an identity.
+/// A string that is not an identity.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "unknown identity {0:?}, expected sim, team-NAME, gateway, gateway-NAME, observer, operator"
@@ -60,10 +60,10 @@ impl FromStr for Identity {
     }
 }
 
-/// Whether a text is valid as a team or boat name: it becomes part of file names and topics.
+/// Whether a string is valid as a team or boat name, which becomes part of file names and topics.
 fn is_name(name: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    // A common name holds up to 64 characters (RFC 5280, upper bound `ub-common-name`), and the
+    // A common name has up to 64 characters (RFC 5280, upper bound `ub-common-name`), and the
     // longest prefix takes eight.
     (1..=48).contains(&name.len()) && name.chars().all(allowed)
 }

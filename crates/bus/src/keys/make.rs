@@ -13,7 +13,8 @@ use std::time::Duration;
 use thiserror::Error;
 use time::OffsetDateTime;
 
-/// The clocks of boats and laptops may lag behind that of the machine that creates the keys.
+/// How far the clocks of boats and laptops may lag behind that of the machine that creates the
+/// keys.
 const CLOCKS_DIFFER: Duration = Duration::from_secs(24 * 3600);
 
 /// An error while making keys.
@@ -36,10 +37,10 @@ pub enum MakeError {
 }
 
 /// Makes an authority and a bundle for each identity, each in a folder of that name under `folder`;
-/// returns the bundles' folders. `hosts` are the names and addresses at which nodes reach the sim.
+/// returns the bundles' folders. Nodes reach the sim at the names and addresses in `hosts`.
 ///
 /// # Errors
-/// [`MakeError`]; also if a bundle of one of these names already exists.
+/// [`MakeError`]; also if a bundle with one of these names already exists.
 pub fn make(
     folder: &Path,
     identities: &[Identity],
@@ -61,11 +62,12 @@ pub fn make(
         (params.not_before, params.not_after) = (from, until);
         Ok(params)
     };
-    // Each set has an authority with its own name, to distinguish keys of different sets.
+    // Each set has an authority with its own name, so that keys of different sets can be
+    // distinguished.
     let mut authority = params(format!("Squall {:016x}", crate::random_number()), &[])?;
-    // No authorities below this one: its key is discarded when this function returns, and nothing
-    // else may sign in its name. Revoking a single certificate would need a list that reaches every
-    // boat, so a set is replaced as a whole.
+    // No authorities below this one: its key is discarded when this function returns, and no other
+    // may sign in its name. Revoking a single certificate would need a list that reaches every
+    // boat, so sets are replaced as a whole.
     authority.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     authority.key_usages = vec![KeyUsagePurpose::KeyCertSign];
     let authority_key = KeyPair::generate()?;
@@ -73,7 +75,8 @@ pub fn make(
     let issuer = Issuer::new(authority, authority_key);
     let mut folders = Vec::new();
     for identity in identities {
-        // The sim only listens and all others only connect: no other certificate can serve a game.
+        // The sim only listens and all others only connect, so no other certificate can serve a
+        // game.
         let (usage, hosts) = match identity {
             Identity::Sim => (ExtendedKeyUsagePurpose::ServerAuth, hosts),
             _ => (ExtendedKeyUsagePurpose::ClientAuth, &[][..]),
@@ -81,7 +84,7 @@ pub fn make(
         let mut certificate = params(identity.to_string(), hosts)?;
         certificate.key_usages = vec![KeyUsagePurpose::DigitalSignature];
         certificate.extended_key_usages = vec![usage];
-        // Strict verifiers, such as `openssl verify -x509_strict`, refuse a certificate without it.
+        // Strict verifiers, such as `openssl verify -x509_strict`, reject a certificate without it.
         certificate.use_authority_key_identifier_extension = true;
         let key = KeyPair::generate()?;
         let certificate = certificate.signed_by(&key, &issuer)?.pem();
@@ -95,7 +98,7 @@ pub fn make(
     Ok(folders)
 }
 
-/// Creates a folder, readable only by its owner, with its parents; fails if it exists.
+/// Creates a folder readable only by its owner, and its parents; fails if it exists.
 fn make_folder(path: &Path) -> Result<(), MakeError> {
     let failed = |source| MakeError::Write {
         path: path.to_owned(),

@@ -1,7 +1,7 @@
 //! Keys of a game: certificates that identify nodes, for TLS on both sides of every link.
 //!
-//! `make` creates a separate authority for each set of keys and discards the authority's key.
-//! No one can extend a set; to revoke a set, create another one. A node has a [`Bundle`]: its
+//! `make` creates a separate authority for each set of keys and discards the authority's key. No
+//! one can extend a set; to revoke a set, create a new one. A node has a [`Bundle`]: its
 //! certificate, its key, and the authority's certificate.
 
 mod bundle;

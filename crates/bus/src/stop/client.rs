@@ -1,4 +1,4 @@
-//! The operator's stop client: sends stops on every available path, and receives the states of
+//! The operator's stop client: sends stops on all available paths, and receives the states of
 //! boats.
 
 use super::datagram::States;
@@ -18,29 +18,29 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
-/// How often the status is requested on every path.
+/// Interval at which the status is requested on every path.
 const STATUS_AGAIN: Duration = Duration::from_secs(1);
 /// Maximum wait for a game that is slow to answer, once all known boats have stopped.
 const GAME_MAX: Duration = Duration::from_secs(3);
 /// Maximum number of control ports.
 const GATEWAYS_MAX: usize = 256;
 
-/// Stops boats. On drop, it closes its own paths.
+/// Stops boats. When dropped, it closes its own paths.
 pub struct StopClient(Arc<Shared>);
 
-/// The state that its threads share.
+/// The state shared by its threads.
 struct Shared {
     orders: Watched<StopOrders>,
     game: Mutex<Option<Arc<StopTopics>>>,
     gateways: Mutex<BTreeMap<SocketAddr, GatewayPath>>,
-    /// Control ports named in statuses, not opened yet.
+    /// Control ports named in statuses but not yet opened.
     named: Mutex<BTreeMap<SocketAddr, String>>,
     hubs: Mutex<Vec<DatagramPath>>,
     is_closing: AtomicBool,
 }
 
 impl StopClient {
-    /// A client without paths. It repeats a stop for up to `limit` until boats show it.
+    /// A client without paths. It repeats a stop until boats show it, for up to `limit`.
     ///
     /// # Errors
     /// If the system cannot start a thread.
@@ -55,13 +55,13 @@ impl StopClient {
         });
         let at_work = Arc::clone(&shared);
         // A lost TCP packet costs at least 200 ms, and opening a zenoh session five round trips;
-        // datagrams and open connections cost only the trip there. So all paths are opened before
+        // datagrams and open connections cost only a one-way trip. So all paths are opened before
         // the button is pressed.
         start_thread("stop-client", move || at_work.run())?;
         Ok(StopClient(shared))
     }
 
-    /// Adds a path: a gateway's control port, with its token. A port known already gets the new
+    /// Adds a path: a gateway's control port, with its token. A port already known gets the new
     /// token.
     ///
     /// # Errors
@@ -78,7 +78,7 @@ impl StopClient {
     /// Adds a path: datagrams to a sim that listens at these endpoints.
     ///
     /// # Errors
-    /// If the system cannot provide a socket or thread. Endpoints of other kinds or of unknown
+    /// If the system cannot provide a socket or thread. Endpoints of other kinds or with unknown
     /// hosts are skipped.
     pub fn add_hub(
         &self,
@@ -86,7 +86,7 @@ impl StopClient {
         game: Option<&GameName>,
         token: Option<&Token>,
     ) -> io::Result<()> {
-        // With keys there are no datagrams: they do not identify their sender, and every node in
+        // With keys there are no datagrams: they do not identify their senders, and every node in
         // such a game has a link anyway.
         for endpoint in endpoints
             .iter()
@@ -107,12 +107,12 @@ impl StopClient {
             let path = DatagramPath::open(at, game, token.cloned().into(), on_news)?;
             self.0.hubs.lock().push(path);
         }
-        // A path that opens during a stop carries it immediately, not at the next repeat.
+        // A path that opens during a stop sends it immediately, not at the next repeat.
         self.0.orders.visit(StopOrders::hurry);
         Ok(())
     }
 
-    /// Adds a path: the topics of a game with these real boats, in place of those of the previous
+    /// Adds a path: the topics of a game with these real boats, replacing those of the previous
     /// game.
     ///
     /// # Errors
@@ -127,7 +127,7 @@ impl StopClient {
                 .for_each(|shared| shared.hear(&status, is_here));
         })?;
         let before = self.0.game.lock().replace(Arc::new(path));
-        // A callback of a dropped subscription may still be running, so no lock is held here.
+        // A callback of the dropped subscription may still be running, so hold no lock here.
         drop(before);
         let unanswered = self.0.orders.visit(|orders| {
             boats.iter().for_each(|boat| orders.expect(boat));
@@ -145,7 +145,7 @@ impl StopClient {
         drop(path);
     }
 
-    /// Stops a boat, or all of them; replaces an earlier stop of the same kind and target.
+    /// Stops one boat or all boats; replaces an earlier stop of the same kind and target.
     pub fn stop(&self, target: Option<&str>, command: StopCommand) {
         let now = clock::now();
         let number = self
@@ -163,13 +163,13 @@ impl StopClient {
         self.0.orders.visit(visit)
     }
 
-    /// Waits up to `limit` until `holds`, and returns whether it does.
+    /// Waits up to `limit` until `holds`; returns whether it does.
     pub fn wait(&self, limit: Duration, holds: impl FnMut(&StopOrders) -> bool) -> bool {
         self.0.orders.wait(limit, holds)
     }
 
-    /// Waits up to `limit` until every stop is done, and returns the unfinished ones. Call it after
-    /// the last request. Without a game to name its boats, the known ones count.
+    /// Waits up to `limit` until every stop is done; returns the unfinished ones. Call it after the
+    /// last request. Without a game to name its boats, only the known ones count.
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
         // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,
@@ -181,7 +181,7 @@ impl StopClient {
         self.visit(|orders| orders.unfinished())
     }
 
-    /// Ends the repeats of earlier stops of a boat, or of all, because of a newer command.
+    /// Ends the repeats of earlier stops of one boat or all boats, because of a newer command.
     pub fn cancel(&self, target: Option<&str>) {
         self.visit(|orders| orders.cancel(target));
     }
@@ -267,7 +267,7 @@ impl Shared {
                 "more than {GATEWAYS_MAX} gateways"
             )));
         }
-        // Until its boat is known, the address is used as its name.
+        // Until the boat is known, the address serves as its name.
         let expected = vehicle.map_or_else(|| at.to_string(), str::to_owned);
         self.orders.visit(|orders| orders.expect(&expected));
         let shared = Arc::downgrade(self);
@@ -301,7 +301,7 @@ impl Shared {
             .for_each(|hub| hub.send(&ask(String::new()), 0));
     }
 
-    /// Sends stops that are due, on the quickest paths first.
+    /// Sends stops that are due, on the fastest paths first.
     fn say(&self, now: Instant) {
         for saying in self.orders.visit(|orders| orders.due(now)) {
             self.say_to_hubs(&saying);
@@ -326,7 +326,7 @@ impl Shared {
             });
             return;
         }
-        // This path cannot send a stop of the fleet to single boats.
+        // On this path, a stop of the fleet cannot be sent to single boats.
         let boats = saying
             .boats
             .iter()
@@ -338,7 +338,7 @@ impl Shared {
     }
 
     fn say_to_game(&self, saying: &Saying) {
-        // No lock is held while messages go out.
+        // Hold no lock while messages go out.
         let Some(game) = self.game.lock().clone() else {
             return;
         };
@@ -359,7 +359,7 @@ impl Shared {
         }
     }
 
-    /// Asks the sim to stop all boats and waits for its answer: it stops the boats that it
+    /// Asks the sim to stop all boats, and waits for its answer: the sim stops the boats that it
     /// simulates.
     fn ask_sim(self: &Arc<Self>, stop: u64) {
         let game = self
@@ -384,7 +384,7 @@ impl Shared {
         }
     }
 
-    /// Handles a published status; `is_here` if the game is on this machine.
+    /// Handles a published status; `is_here` means that the game runs on this machine.
     fn hear(&self, status: &GatewayStatus, is_here: bool) {
         self.orders.visit(|orders| {
             let now = clock::now();
@@ -400,7 +400,7 @@ impl Shared {
             .control
             .as_ref()
             .and_then(|control| control.parse::<SocketAddr>().ok());
-        // A loopback address may belong to another machine.
+        // A loopback address may belong to a different machine.
         let control =
             control.filter(|at| !at.ip().is_unspecified() && (is_here || !at.ip().is_loopback()));
         let mut named = self.named.lock();
@@ -427,7 +427,7 @@ impl Shared {
     }
 }
 
-/// Handles news from a gateway, expected by the name `unnamed` until its boat is known.
+/// Handles news from a gateway; its boat is called `unnamed` until it is known.
 fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
     let Some(shared) = shared.upgrade() else {
         return;
@@ -449,7 +449,7 @@ fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
 }
 
 impl Saying {
-    /// The command for a boat's gateway; also for a gateway with unknown boat, if it is for the
+    /// The command for a boat's gateway; also for a gateway whose boat is unknown, if it is for the
     /// fleet.
     fn command_to(&self, vehicle: Option<&str>) -> Option<GatewayCommand> {
         if self.is_of_fleet && self.command == StopCommand::EStop {

@@ -1,7 +1,7 @@
 //! Stop datagrams: a request as at a control port, and its answer.
 //!
-//! A request is JSON, padded with spaces. Its answer repeats session and number, which a stranger
-//! elsewhere cannot guess. It is never longer than the request: the port cannot amplify a flood.
+//! A request is JSON, padded with spaces. Its answer repeats session and number, which an outsider
+//! cannot guess. It is never longer than the request, so the port cannot amplify a flood.
 
 use crate::token::{Proof, Token};
 use messages::external::GatewayCommand;
@@ -11,16 +11,16 @@ use std::collections::BTreeMap;
 
 /// Maximum length of a datagram, bytes: it fits into one packet on usual networks.
 pub const DATAGRAM_MAX: usize = 1400;
-/// Requests are padded to this length, bytes.
+/// Length to which requests are padded, bytes.
 const FILLED: usize = 1200;
 /// The key of answers, in proofs.
 const ANSWER_KEY: &str = "stop datagram";
 
-/// A request in a datagram: a stop, or a request for the status. A line of a control port has the
+/// A request in a datagram: a stop, or a request for the status. A line at a control port has the
 /// same format.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StopRequest {
-    /// The command; never one that needs a token.
+    /// The command; never a command that needs a token.
     #[serde(rename = "body")]
     pub command: GatewayCommand,
     /// A random number that identifies the sender.
@@ -29,13 +29,13 @@ pub struct StopRequest {
     /// Sequence number of the request.
     #[serde(default)]
     pub number: u64,
-    /// The game; if unset, any.
+    /// The game; if unset, any game.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub game: Option<String>,
 }
 
-/// The states of boats, by name: the state as text, and its age when the answer was made, ms. The
-/// text is empty for a silent boat.
+/// The states of boats, by name: the state as a string, and its age when the answer was made, ms.
+/// The string is empty for a silent boat.
 pub type States = BTreeMap<String, (String, u64)>;
 
 /// The wire format.
@@ -56,9 +56,9 @@ impl StopRequest {
     /// Never: a request is JSON.
     pub fn encode(&self) -> Vec<u8> {
         let mut bytes = serde_json::to_vec(self).expect("a request is JSON");
-        // The answer may be no longer than the request, and has to name all boats. With its headers
-        // it stays below the 1280 bytes that every IPv6 link carries (RFC 8200); a fragmented
-        // datagram is lost with any one fragment.
+        // The answer may be no longer than the request, but must name all boats. With headers it
+        // stays below the 1280 bytes that every IPv6 link carries (RFC 8200); a fragmented datagram
+        // is lost if any fragment is lost.
         bytes.resize(bytes.len().max(FILLED), b' ');
         bytes
     }
@@ -69,7 +69,7 @@ impl StopRequest {
             return None;
         }
         let request: StopRequest = serde_json::from_slice(bytes).ok()?;
-        // A datagram has no challenge: a recorded one could be replayed. It is accepted only for
+        // A datagram has no challenge, so a recorded one could be replayed. Accept it only for
         // commands that any node may repeat.
         (!request.command.needs_token()).then_some(request)
     }
@@ -96,8 +96,8 @@ impl StopRequest {
         (bytes.len() <= room).then_some(bytes)
     }
 
-    /// Decodes the answer to this request; `None` if it is garbage, for another request, or does
-    /// not prove the known token.
+    /// Decodes the answer to this request; `None` if it is garbage, answers a different request, or
+    /// does not prove the known token.
     pub(super) fn read_answer(&self, bytes: &[u8], token: Option<&Token>) -> Option<States> {
         let AnswerDatagram {
             session,

@@ -1,4 +1,4 @@
-//! A UDP socket with a thread that reads it until it is dropped.
+//! A UDP socket, and a thread that reads it until it is dropped.
 
 use super::DATAGRAM_MAX;
 use crate::clock;
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often the reading thread checks whether to end.
+/// Interval at which the reading thread checks whether it must end.
 const POLL: Duration = Duration::from_millis(100);
 
 /// A UDP socket and the thread that reads it. Closed on drop.
@@ -19,8 +19,7 @@ pub struct DatagramPort {
 }
 
 impl DatagramPort {
-    /// Calls `serve` with every datagram that is not too long, and returns its result to the
-    /// sender.
+    /// Calls `serve` with every datagram that is not too long, and sends the result back.
     ///
     /// # Errors
     /// If the system cannot start a thread.
@@ -43,7 +42,7 @@ impl DatagramPort {
                             .for_each(|answer| drop(socket.send_to(&answer, from)));
                     }
                     Ok(_) => {}
-                    // No process listens at the target of a request yet.
+                    // No process is listening at the target of a request yet.
                     Err(e) if e.kind() == io::ErrorKind::ConnectionRefused => {}
                     Err(e)
                         if matches!(

@@ -1,5 +1,5 @@
-//! The operator's end of a path: datagrams to a control port or a sim, and a connection to a
-//! control port that stays open.
+//! The operator's end of a path: datagrams to a control port or a sim, and a permanently open
+//! connection to a control port.
 
 use super::datagram::{States, StopRequest, answered_number};
 use super::datagram_port::DatagramPort;
@@ -17,12 +17,12 @@ use std::time::{Duration, Instant};
 
 /// Maximum number of requests awaiting an answer; the oldest are discarded first.
 const AWAITED_MAX: usize = 128;
-/// Timeout of connecting, and the time until the next attempt.
+/// Connection timeout, and time until the next attempt.
 const CONNECT_MAX: Duration = Duration::from_secs(3);
 const CONNECT_AGAIN: Duration = Duration::from_millis(300);
-/// A connection silent for this long is reopened: the status is requested every second.
+/// Silence after which a connection is reopened; the status is requested every second.
 const SILENT_MAX: Duration = Duration::from_secs(4);
-/// Write timeout: a blocked peer does not delay a stop on the other paths.
+/// Write timeout: a blocked peer must not delay a stop on other paths.
 const WRITE_MAX: Duration = Duration::from_millis(20);
 
 pub(super) enum PathNews {
@@ -35,9 +35,9 @@ pub(super) enum PathNews {
 /// An answered request.
 #[derive(Clone, Copy)]
 pub(super) struct Asked {
-    /// The number of its stop; 0 for none.
+    /// The number of the stop to which it belongs; 0 for none.
     pub(super) stop: u64,
-    /// When it was sent.
+    /// When the request was sent.
     pub(super) at: Instant,
 }
 
@@ -73,7 +73,7 @@ impl DatagramPath {
             Ipv6Addr::UNSPECIFIED.into()
         };
         let socket = UdpSocket::bind((any, 0))?;
-        // Accepts datagrams from this address only.
+        // Accept datagrams only from this address.
         socket.connect(at)?;
         let sent = Arc::new(Mutex::new(Sent::default()));
         let answered = Arc::clone(&sent);
@@ -128,14 +128,14 @@ impl DatagramPath {
         let surplus = sent.awaited.len().saturating_sub(AWAITED_MAX);
         sent.awaited.drain(..surplus);
         drop(sent);
-        // It is repeated, and sent by other paths.
+        // It is repeated, and sent on other paths.
         drop(self.socket.send(&bytes));
     }
 }
 
 /// A gateway's control port, over TCP and UDP at once.
 pub(super) struct GatewayPath {
-    /// Its boat, once known.
+    /// The boat, once known.
     pub(super) vehicle: Arc<Mutex<Option<String>>>,
     pub(super) token: CurrentToken,
     datagrams: DatagramPath,
@@ -157,7 +157,7 @@ struct Open {
 }
 
 impl GatewayPath {
-    /// Starts connecting to a port; `vehicle` is its boat, if known.
+    /// Starts connecting to a port; `vehicle` is the gateway's boat, if known.
     pub(super) fn open(
         at: SocketAddr,
         vehicle: Option<String>,
@@ -199,7 +199,7 @@ impl GatewayPath {
         self.datagrams.close();
     }
 
-    /// Sends a command over both TCP and UDP, for this stop.
+    /// Sends a command for this stop over both TCP and UDP.
     pub(super) fn send(&self, command: &GatewayCommand, stop: u64) {
         self.datagrams.send(command, stop);
         self.connection.send(command, stop);
@@ -217,7 +217,7 @@ impl Connection {
     fn run(&self) {
         while !self.is_closing.load(Ordering::SeqCst) {
             if let Ok(stream) = TcpStream::connect_timeout(&self.at, CONNECT_MAX) {
-                // However it ends, it is reopened.
+                // However the connection ends, it is reopened.
                 drop(self.read(stream));
                 self.close();
             }
@@ -249,7 +249,8 @@ impl Connection {
             let Some(asked) = awaited.filter(|_| line.ends_with(b"\n")) else {
                 return Ok(());
             };
-            // This connection proves nothing: requests that need the token use a separate one.
+            // This connection proves nothing: requests that need the token use a separate
+            // connection.
             match serde_json::from_slice(&line) {
                 Ok(Answer::Answer(OperatorReply {
                     refused: None,
@@ -260,7 +261,7 @@ impl Connection {
                         asked,
                     ));
                 }
-                // Another boat's gateway, or one that does not run yet.
+                // A different boat's gateway, or a gateway that does not run yet.
                 Ok(_) => {}
                 Err(_) => return Ok(()),
             }
@@ -279,7 +280,7 @@ impl Connection {
             at: clock::now(),
         });
         if awaited.len() > AWAITED_MAX || (&*stream).write_all(&line).is_err() {
-            // The peer takes no more data, and a partial line is invalid.
+            // The peer accepts no more data, and a partial line is invalid.
             drop(stream.shutdown(Shutdown::Both));
             *open = None;
         }

@@ -1,4 +1,4 @@
-//! The sim's ports for stop datagrams, besides the links of its session.
+//! The sim's ports for stop datagrams, in addition to the links of its session.
 
 use super::StopTopics;
 use super::datagram::{States, StopRequest};
@@ -21,18 +21,18 @@ const FRESH: Duration = Duration::from_secs(3);
 /// The ports of a sim, closed on drop.
 pub struct HubStopPort(#[expect(dead_code, reason = "kept for its drop")] Vec<DatagramPort>);
 
-/// The states of the real boats by name, and when each was heard.
+/// The states of the real boats by name, and when each state was received.
 type Heard = BTreeMap<String, Option<(String, Instant)>>;
 
-/// The state that the threads share.
+/// The state shared by the threads.
 struct Server {
     topics: StopTopics,
     heard: Arc<Mutex<Heard>>,
 }
 
 impl HubStopPort {
-    /// Accepts stops at the hosts and ports where the hub of a game with these real boats listens.
-    /// In a game with keys it opens no port: a datagram does not identify its sender.
+    /// Accepts stops at the hosts and ports of the hub of a game with these real boats. In a game
+    /// with keys it opens no port, since a datagram does not identify its sender.
     ///
     /// # Errors
     /// [`BusError`] if a port is taken, or the session is closed.
@@ -69,7 +69,7 @@ impl HubStopPort {
                 reason: e.to_string(),
             };
             let found = address(endpoint).to_socket_addrs().map_err(failed)?;
-            // A name may have addresses of a family that this machine does not use.
+            // A name may have addresses in a family that this machine does not use.
             let (bound, missed): (Vec<_>, Vec<_>) =
                 found.map(UdpSocket::bind).partition(Result::is_ok);
             if bound.is_empty() {
@@ -113,13 +113,13 @@ impl Server {
                 .for_each(|json| drop(publisher.send_json(json)));
         };
         match &request.command {
-            // This session receives it too.
+            // This session also receives it.
             GatewayCommand::Fleet(FleetCommand::EStop) => {
                 publish(control, serde_json::to_vec(&Control::EStop))
             }
             GatewayCommand::Boat { name, command } if *command != OperatorCommand::Status => {
-                // Published by the sim's session, which needs no rule at the hub. An unknown boat
-                // gets no answer and learns nothing.
+                // Published in the sim's session, which needs no rule at the hub. For an unknown
+                // boat there is no answer, which reveals nothing.
                 publish(stops.get(name)?, serde_json::to_vec(command));
             }
             _ => {}
@@ -134,7 +134,7 @@ impl Server {
                 .map(|(state, age)| (state.clone(), age.as_millis() as u64))
                 .unwrap_or_default()
         };
-        // Lists all boats, so that the operator knows that no others exist.
+        // List all boats, so that the operator knows that there are no others.
         let states: States = self
             .heard
             .lock()

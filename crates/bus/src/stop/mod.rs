@@ -1,8 +1,8 @@
-//! Stops of boats (E-stop and disarm) over every path at once.
+//! Stops of boats (E-stop and disarm) over all paths at once.
 //!
 //! [`StopClient`] is for operators: it sends a stop on all known paths, repeats it, and reports
-//! when the boat's own status shows it. The paths are the topics of the game, the control ports of
-//! gateways over TCP, and datagrams ([`StopRequest`]) to control ports and to the sim
+//! when the boat's own status shows the stop. The paths are the topics of the game, the control
+//! ports of gateways over TCP, and datagrams ([`StopRequest`]) to control ports and to the sim
 //! ([`HubStopPort`]).
 
 mod client;
@@ -23,7 +23,7 @@ use messages::external::{GatewayStatus, OperatorCommand};
 use messages::topic::{self, GameName};
 use std::collections::BTreeMap;
 
-/// The topics of a game with real boats on which these are stopped.
+/// The topics on which the real boats of a game are stopped.
 struct StopTopics {
     bus: Bus,
     game: GameName,
@@ -40,7 +40,7 @@ impl StopTopics {
         boats: &[String],
         take: impl Fn(GatewayStatus) + Clone + Send + Sync + 'static,
     ) -> Result<StopTopics, BusError> {
-        // Before everything else, and not behind a lost packet, because stops are repeated.
+        // Before all other messages, and not waiting for a lost packet, because stops are repeated.
         let publisher = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
         let mut stops = BTreeMap::new();
         let mut statuses = Vec::new();
@@ -77,7 +77,7 @@ impl StopCommand {
         }
     }
 
-    /// The stop in this command, if it is one.
+    /// The stop that a command contains, if any.
     pub fn of(command: &OperatorCommand) -> Option<StopCommand> {
         match command {
             OperatorCommand::EStop => Some(StopCommand::EStop),
@@ -86,7 +86,7 @@ impl StopCommand {
         }
     }
 
-    /// Whether this state of a boat, as gateways spell it, shows the stop.
+    /// Whether a boat's state, as spelled by gateways, shows the stop.
     pub fn is_shown_by(self, state: &str) -> bool {
         state.starts_with("e-stopped")
             || (self == StopCommand::Disarm && state.starts_with("disarmed"))

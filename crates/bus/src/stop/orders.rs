@@ -1,5 +1,5 @@
-//! Requested stops and the reports of boats since: which stops to repeat, and which are done. Uses
-//! no sockets and no clock.
+//! Requested stops and later reports of boats: which stops to repeat, and which are done. Uses no
+//! sockets and no clock.
 
 #[cfg(test)]
 mod tests;
@@ -8,26 +8,27 @@ use super::StopCommand;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
-/// When a stop is repeated, ms after the request: a lost one then costs little, and repeats let TCP
-/// detect the loss immediately.
+/// When a stop is repeated, ms after the request: the loss of one then costs little, and repeats
+/// let TCP detect it immediately.
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// The interval of later repeats.
 const AGAIN: Duration = Duration::from_millis(200);
-/// A published status may be older than the stop. For this long, the stop is repeated even if a
-/// status shows it, and a status is ignored unless the boat was known to be in a different state
-/// before.
+/// A published status may be older than the stop. For this time, the stop is repeated even if a
+/// status shows it, and a status is ignored unless the boat was previously known to be in a
+/// different state.
 const DOUBTED: Duration = Duration::from_secs(1);
-/// How far a gateway's clock may fall behind from one status to the next.
+/// Maximum lag that a gateway's clock may gain from one status to the next.
 const DRIFT: Duration = Duration::from_micros(100);
-/// A gateway whose start time seems to have moved by this much was restarted.
+/// Apparent shift of a gateway's start time above which it was restarted.
 const RESTARTED: Duration = Duration::from_secs(10);
-/// A stop of all boats goes to all for this long, then only to those that do not show it.
+/// Time during which a stop of all boats goes to all; then it goes only to boats that do not show
+/// it.
 const TO_EVERYBODY: Duration = Duration::from_secs(2);
-/// A boat that does not show a stop after this long is reported as late.
+/// Time after which a boat that does not show a stop is reported as late.
 const LATE: Duration = Duration::from_secs(2);
-/// A boat not heard for this long is silent.
+/// Time without hearing from a boat after which it is silent.
 const SILENCE: Duration = Duration::from_secs(3);
-/// The sim's copies count for a boat that has not been heard directly for this long.
+/// Time without hearing directly from a boat after which the sim's copies count.
 const RELAYED_AFTER: Duration = Duration::from_secs(1);
 /// Maximum number of unread news; the oldest are discarded first.
 const NEWS_MAX: usize = 1024;
@@ -35,13 +36,13 @@ const NEWS_MAX: usize = 1024;
 /// The known facts about a boat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownBoat {
-    /// Its state as text, if it was heard.
+    /// The boat's state as a string, if it was heard.
     pub state: Option<String>,
     /// When it was heard last.
     pub heard: Option<Instant>,
-    /// When it was last heard directly, not through a copy from the sim.
+    /// When the boat was last heard directly, not through a copy from the sim.
     heard_itself: Option<Instant>,
-    /// When its gateway started, by the status with the shortest delay.
+    /// When the boat's gateway started, according to the status with the shortest delay.
     began: Option<Instant>,
     /// Whether the boat has been silent for some time.
     pub is_silent: bool,
@@ -56,7 +57,7 @@ pub enum StopNews {
         vehicle: String,
         /// The kind of stop.
         command: StopCommand,
-        /// The state as text.
+        /// The state as a string.
         state: String,
         /// Time since the request.
         after: Duration,
@@ -68,13 +69,14 @@ pub enum StopNews {
         /// The kind of stop.
         command: StopCommand,
     },
-    /// The sim has answered a stop of all boats after this time, or failed to, for this reason.
+    /// The sim has answered a stop of all boats after the given time, or has failed to, for the
+    /// given reason.
     Sim(Result<Duration, String>),
     /// The state of a boat has changed.
     State {
         /// The name of the boat.
         vehicle: String,
-        /// The state as text.
+        /// The state as a string.
         state: String,
     },
     /// A boat has been silent for some time.
@@ -89,10 +91,10 @@ pub enum StopNews {
 pub(super) enum Source {
     /// The answer to this stop.
     Answer(u64),
-    /// A published state, no older than this moment: it may be older than a stop requested
+    /// A published state from no earlier than the given time: it may be older than a stop requested
     /// meanwhile.
     Published(Instant),
-    /// A copy from the sim, which received the original no earlier than this.
+    /// A copy from the sim, which received the original no earlier than the given time.
     Relayed(Instant),
 }
 
@@ -100,22 +102,22 @@ pub(super) enum Source {
 #[derive(Clone, Debug)]
 struct Stop {
     number: u64,
-    /// The boat; `None` for all of them.
+    /// The boat; `None` means all boats.
     target: Option<String>,
     command: StopCommand,
     asked: Instant,
-    /// How often it was sent.
+    /// How often the stop was sent.
     said: usize,
-    /// Boats that show it, and whether by an answer to it.
+    /// Boats that show the stop, and whether in an answer to it.
     shown: BTreeMap<String, bool>,
-    /// Boats that were in another state then, or since.
+    /// Boats that were in a different state when it was requested, or have been since.
     others: BTreeSet<String>,
     /// The sim's answer to a stop of all boats.
     sim: Option<Result<(), String>>,
     is_late: bool,
-    /// Whether to send it at once because a path was added.
+    /// Whether to send the stop at once because a path was added.
     is_hurried: bool,
-    /// Whether a later command supersedes it.
+    /// Whether a later command supersedes the stop.
     is_cancelled: bool,
 }
 
@@ -124,16 +126,16 @@ struct Stop {
 pub(super) struct Saying {
     pub(super) number: u64,
     pub(super) command: StopCommand,
-    /// Whether it is for all boats and still sent to all.
+    /// Whether the stop is for all boats and still sent to all.
     pub(super) is_of_fleet: bool,
     pub(super) to_everybody: bool,
-    /// The boats that do not show it for certain.
+    /// The boats that do not show the stop with certainty.
     pub(super) boats: Vec<String>,
 }
 
 /// All requested stops, and the known boats.
 pub struct StopOrders {
-    /// How long an unshown stop is repeated.
+    /// How long a stop that is not shown is repeated.
     limit: Duration,
     boats: BTreeMap<String, KnownBoat>,
     /// Whether all boats are known because a game has named them.
@@ -147,7 +149,7 @@ pub struct StopOrders {
 }
 
 impl StopOrders {
-    /// No stops yet. An unshown stop is repeated for up to `limit`.
+    /// No stops yet. A stop that is not shown is repeated for up to `limit`.
     pub(super) fn new(limit: Duration) -> StopOrders {
         let boats = BTreeMap::new();
         let stops = Vec::new();
@@ -178,7 +180,7 @@ impl StopOrders {
         self.boats.iter()
     }
 
-    /// Whether every stop is done for certain; a stop of all is not before a game has named its
+    /// Whether every stop is certainly done; a stop of all boats is not before a game has named its
     /// boats.
     pub fn is_done(&self, now: Instant) -> bool {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
@@ -195,7 +197,7 @@ impl StopOrders {
         self.news.drain(..).collect()
     }
 
-    /// Expects a boat to show stops of all boats, whether it is heard or not.
+    /// Expects a boat to show stops of all boats, whether it is heard from or not.
     pub(super) fn expect(&mut self, vehicle: &str) {
         let unheard = KnownBoat {
             state: None,
@@ -207,13 +209,13 @@ impl StopOrders {
         self.boats.entry(vehicle.to_owned()).or_insert(unheard);
     }
 
-    /// Forgets a boat that turns out to have another name, or not to exist.
+    /// Forgets a boat that turns out to have a different name, or not to exist.
     pub(super) fn forget(&mut self, vehicle: &str) {
         self.boats.remove(vehicle);
     }
 
-    /// Records that no further boats will be named: all boats of the game are expected now, or no
-    /// game exists.
+    /// Records that no more boats will be named: either all boats of the game are now expected, or
+    /// there is no game.
     pub fn complete(&mut self) {
         self.is_complete = true;
     }
@@ -282,7 +284,7 @@ impl StopOrders {
             .collect()
     }
 
-    /// Ends the repeats of earlier stops of a boat, or of all, because of a newer command.
+    /// Ends the repeats of earlier stops of one boat or all boats, because of a newer command.
     pub fn cancel(&mut self, target: Option<&str>) {
         let is_meant = |stop: &Stop| {
             target.is_none() || stop.target.is_none() || stop.target.as_deref() == target
@@ -293,8 +295,8 @@ impl StopOrders {
             .for_each(|stop| stop.is_cancelled = true);
     }
 
-    /// A lower bound of the time at which a status arriving now was true; `at_s` is its time since
-    /// the gateway started, s.
+    /// The earliest time at which a status arriving now can have been true; `at_s` is its time
+    /// since the gateway started, s.
     pub(super) fn as_of(&mut self, now: Instant, vehicle: &str, at_s: f64) -> Instant {
         let at = Duration::try_from_secs_f64(at_s).ok();
         let (Some(boat), Some(at)) = (self.boats.get_mut(vehicle), at) else {
@@ -304,8 +306,8 @@ impl StopOrders {
             return now;
         };
         // The clocks may drift apart, and a restarted gateway started later. The earliest start
-        // time that any status implies comes from the status with the shortest delay; all later
-        // ones are judged by it.
+        // time implied by any status comes from the status with the shortest delay; later statuses
+        // are judged by it.
         let known = boat
             .began
             .map(|known| known + DRIFT)
@@ -344,8 +346,8 @@ impl StopOrders {
                 .as_deref()
                 .is_none_or(|target| target == vehicle)
         }) {
-            // A status in transit may be older than the stop: only an answer to the stop, or a
-            // status certainly received after it, is proof.
+            // A status in transit may be older than the stop: the only proof is an answer to the
+            // stop, or a status that is certainly newer.
             let is_sure = source == Source::Answer(stop.number)
                 || relayed.is_some_and(|as_of| as_of > stop.asked);
             // A lost packet delays statuses for longer than a stop takes.
@@ -418,7 +420,7 @@ impl StopOrders {
                 continue;
             }
             stop.is_hurried = false;
-            // Repeats missed during sleep are skipped.
+            // Skip repeats missed during sleep.
             while stop.at(stop.said) <= now {
                 stop.said += 1;
             }
@@ -477,7 +479,7 @@ impl StopOrders {
         self.news.drain(..surplus);
     }
 
-    /// The latest stops that boats have not shown yet, as text, one each. Empty if all stops are
+    /// The latest stops that boats have not yet shown, as one string each. Empty if all stops are
     /// done.
     pub fn unfinished(&self) -> Vec<String> {
         let mut left = Vec::new();
@@ -491,7 +493,7 @@ impl StopOrders {
                     None => format!("no report from {name}"),
                 }
             }));
-            // Without real boats, the sim answers for those that it simulates.
+            // Without real boats, the sim answers for the boats that it simulates.
             if stop.target.is_none() && self.boats.is_empty() {
                 left.extend(match &stop.sim {
                     Some(Ok(())) => None,
@@ -520,7 +522,7 @@ impl Stop {
         self.shown.get(name) != Some(&true)
     }
 
-    /// When it is sent for the nth time.
+    /// When the stop is sent for the nth time.
     fn at(&self, n: usize) -> Instant {
         match SOON_MS.get(n) {
             Some(ms) => self.asked + Duration::from_millis(*ms),
@@ -532,7 +534,7 @@ impl Stop {
         }
     }
 
-    /// When it is sent next, if at all.
+    /// When the stop is sent next, if at all.
     fn next(
         &self,
         boats: &BTreeMap<String, KnownBoat>,

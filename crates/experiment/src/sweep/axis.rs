@@ -1,4 +1,4 @@
-//! The axes of a sweep: what changes from point to point, and its values.
+//! The axes of a sweep: the quantities that vary between points, and their values.
 
 use scenario::Setting;
 use schemars::JsonSchema;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// A quantity that varies between points. It has one of `values`, `range`, `normal` and
+/// A quantity that varies between points. Requires one of `values`, `range`, `normal` and
 /// `log_normal`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
@@ -16,7 +16,7 @@ pub struct Axis {
     /// or `opponent`, with strategy files.
     #[schemars(length(min = 1), extend("x-expected" = "a key such as sea.wind.speed_m_s"))]
     pub key: String,
-    /// Levels: numbers, texts or files, all of one type.
+    /// Levels: numbers, strings or files, all of one type.
     #[schemars(length(max = 1000))]
     pub values: Vec<AxisValue>,
     /// From and to; uniform in a sampled design.
@@ -50,14 +50,14 @@ pub struct Axis {
 pub enum AxisValue {
     /// A number.
     Number(f64),
-    /// Yes or no.
+    /// A Boolean.
     Truth(bool),
-    /// A text, or the path of a file.
+    /// A string, or the path of a file.
     Text(String),
 }
 
 impl fmt::Display for AxisValue {
-    /// As shown to people: a file by its stem.
+    /// As displayed: a file by its stem.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             AxisValue::Number(number) => write!(f, "{number}"),
@@ -92,9 +92,9 @@ impl AxisValue {
 /// The target of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A key of the files of a kind.
+    /// A key in the files of a kind.
     Key,
-    /// A file that the game names under the axis's own key.
+    /// A file that the game names under the same key as the axis.
     File,
     /// The strategy of the opponents.
     Opponent,
@@ -110,7 +110,7 @@ impl Axis {
         }
     }
 
-    /// The key of its setting in a game in which the entry plays as this team.
+    /// The key of the axis's setting in a game in which the entry plays as this team.
     fn setting_key(&self, team: &str) -> String {
         match (self.target(), self.key.strip_prefix("strategy.")) {
             (Target::File, _) => format!("game.{}", self.key),
@@ -119,7 +119,7 @@ impl Axis {
         }
     }
 
-    /// The setting of a value in a game in which the entry plays as this team.
+    /// The setting for a value in a game in which the entry plays as this team.
     ///
     /// # Errors
     /// If the key of the axis does not begin with a kind of file.
@@ -137,11 +137,12 @@ impl Axis {
         )
     }
 
-    /// What it varies, from the reference of scenario files; `None` if its key is not there.
+    /// The meaning of its key, from the reference of scenario files; `None` if the key is not
+    /// there.
     pub fn meaning(&self) -> Option<String> {
         match self.target() {
             Target::Opponent => Some("Strategy of the opponents.".to_owned()),
-            // The key of a strategy begins with a team, whatever its name.
+            // The key of a strategy begins with a team; its name does not matter.
             _ => scenario::meaning(&self.setting_key("team")),
         }
     }
@@ -164,13 +165,13 @@ impl Axis {
         (0..count).map(|i| self.at(share(i))).collect()
     }
 
-    /// The values to check instead of all: every listed value; both ends and the second level of a
-    /// range or distribution.
+    /// The values to check instead of all: every listed value, or both ends and the second level of
+    /// a range or distribution.
     pub(super) fn telling_values(&self) -> Vec<AxisValue> {
         let mut values = self.levels();
         if self.values.is_empty() {
-            // A key allows an interval, in some cases of integers: the second level shows whether
-            // the steps are integers.
+            // A key allows an interval, in some cases only of integers: the second level shows
+            // whether the steps are integers.
             values = vec![self.at(0.0), values.swap_remove(1), self.at(1.0)];
         }
         values
@@ -195,7 +196,7 @@ impl Axis {
         })
     }
 
-    /// The value while another axis changes alone.
+    /// The value while a different axis varies alone.
     pub fn nominal(&self) -> AxisValue {
         self.nominal
             .clone()
@@ -267,7 +268,7 @@ mod tests {
         for (got, want) in log.iter().zip([0.01, 0.1, 1.0, 10.0, 100.0]) {
             assert!((got / want - 1.0).abs() < 1e-12, "{log:?}");
         }
-        // From tables: 10, 30, 50 ... per cent of the normal distribution lie below these.
+        // From tables: 10, 30, 50 ... per cent of the normal distribution lie below these values.
         // Truncation moves them by less than 0.01.
         let normal = numbers(&Axis {
             normal: Some([10.0, 2.0]),

@@ -1,7 +1,7 @@
 //! The effects of axes and their pairwise interactions: contrasts of means within seeds.
 //!
-//! All points play the same seeds, so a difference is taken within each seed, and its interval is
-//! over seeds alone. The interval describes these points, not other points of a sampled design.
+//! All points play the same seeds, so differences are taken within each seed, and intervals are
+//! over seeds alone. They describe these points, not other points of a sampled design.
 
 use super::metric::{HEADLINES, METRICS, Metric, Metrics};
 use super::plan::{Plan, Point};
@@ -25,7 +25,7 @@ pub struct Effect {
     pub axis: String,
     /// The name of the entry.
     pub entry: String,
-    /// From the first level to the last; of a sampled design, groups of equally many points, by
+    /// From the first level to the last or, in a sampled design, groups of equally many points with
     /// ascending values.
     pub levels: Vec<Level>,
     /// By metric: the last level minus the first.
@@ -45,7 +45,7 @@ pub struct Level {
     pub metrics: Vec<Option<Estimate>>,
 }
 
-/// The interaction of two axes: their joint effect beyond the single ones.
+/// The interaction of two axes: their joint effect beyond their individual effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interaction {
     /// The keys of the axes.
@@ -54,13 +54,13 @@ pub struct Interaction {
     pub entry: String,
     /// The name of the metric.
     pub metric: &'static str,
-    /// The means where both are low, the second alone is high, the first alone is high, and both
-    /// are high.
+    /// The means where both are low, only the second is high, only the first is high, and both are
+    /// high.
     pub cells: [f64; 4],
     /// The effect of the second axis where the first is high, minus its effect where the first is
     /// low.
     pub contrast: Estimate,
-    /// The p-value of the contrast under no interaction, uncorrected for multiple tests.
+    /// The p-value of the contrast if there is no interaction, uncorrected for multiple tests.
     pub p: f64,
     /// Whether it remains significant among all tests (Holm 1979, 5 %).
     pub matters: bool,
@@ -79,8 +79,8 @@ const GROUP_POINTS_MIN: usize = 4;
 const GROUPS_MAX: usize = 8;
 
 impl Observations {
-    /// By seed, the mean of an entry's metric over points; `None` for seeds that are incomplete at
-    /// any of them.
+    /// By seed: the mean of an entry's metric over points; `None` for seeds that are incomplete at
+    /// any of these points.
     fn mean(&self, points: &[usize], entry: usize, metric: usize) -> Vec<Option<f64>> {
         let seeds = self
             .by_point
@@ -170,7 +170,7 @@ pub(crate) fn effects(plan: &Plan, observed: &Observations) -> Vec<Effect> {
     effects
 }
 
-/// The points grouped by the value of an axis; in a one-at-a-time design, only those where all
+/// The points grouped by the value of an axis; in a one-at-a-time design, only points where all
 /// other axes are nominal.
 fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     let sweep = plan.sweep();
@@ -235,7 +235,7 @@ fn pieces(axis: usize, points: &[Point]) -> Vec<Group> {
     (0..count).map(piece).collect()
 }
 
-/// All pairwise interactions for the headline metrics, the significant ones first.
+/// All pairwise interactions for the headline metrics, significant ones first.
 pub(crate) fn interactions(plan: &Plan, observed: &Observations) -> Vec<Interaction> {
     let sweep = plan.sweep();
     if sweep.design == Design::OneAtATime {
@@ -401,7 +401,7 @@ mod tests {
             p,
             matters: false,
         };
-        // 0.01 < 0.05 / 4 and 0.02 > 0.05 / 3; 0.024 is below 0.05 / 2, but comes after a failed
+        // 0.01 < 0.05 / 4, and 0.02 > 0.05 / 3; 0.024 is below 0.05 / 2, but comes after a failed
         // test.
         let mut found = [0.024, 0.9, 0.01, 0.02].map(of);
         mark_those_that_matter(&mut found);

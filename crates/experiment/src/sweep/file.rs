@@ -48,7 +48,7 @@ pub struct Sweep {
     #[serde(rename = "entry")]
     #[schemars(length(min = 1, max = 100))]
     pub entries: Vec<Entrant>,
-    /// What varies between points.
+    /// The quantities that vary between points.
     #[serde(rename = "axis")]
     #[schemars(length(min = 1, max = 50))]
     pub axes: Vec<Axis>,
@@ -78,7 +78,7 @@ impl ScenarioFile for Sweep {
         checked(document)
     }
 
-    /// Checks the game with the values of every axis that suffice to check all, one axis at a time.
+    /// Checks the game with enough values of every axis to cover all values, one axis at a time.
     fn check_games(&self) -> Result<(), Problems> {
         let teams = scenario::load(&self.game)?.teams.into_iter();
         let teams: Vec<String> = teams.map(|team| team.name).collect();
@@ -95,7 +95,7 @@ impl ScenarioFile for Sweep {
         let Err(Problems(mut problems)) = checked else {
             return Ok(());
         };
-        // Each value is read as its own setting, so the same problem has a line that is not in any
+        // Each value is read as its own setting, so the same problem has a line that exists in no
         // file.
         for problem in problems.iter_mut().filter(|one| one.path == self.path) {
             problem.source.clear();
@@ -105,8 +105,8 @@ impl ScenarioFile for Sweep {
 }
 
 impl Sweep {
-    /// The overrides of the game's files and numbers at a point, where an entry plays on a side (0:
-    /// the first team, 1: the second). `values` are those of the axes.
+    /// The overrides of the game's files and numbers at a point, for an entry on a side (0: the
+    /// first team, 1: the second). `values` are the values of the axes.
     ///
     /// # Panics
     /// If the entry or side does not exist, or a key is invalid; a checked sweep has only valid

@@ -1,15 +1,15 @@
-//! The measurements of a game, from the side of one entry.
+//! The measurements of a game, from the point of view of one entry.
 
 use serde::Serialize;
 
 /// A measurement of a game: a column of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Metric {
-    /// Its name.
+    /// The metric's name.
     pub name: &'static str,
-    /// Its unit; empty for counts and fractions.
+    /// The metric's unit; empty for counts and fractions.
     pub unit: &'static str,
-    /// Its description.
+    /// The metric's description.
     pub about: &'static str,
 }
 
@@ -43,8 +43,8 @@ const fn metric(name: &'static str, unit: &'static str, about: &'static str) -> 
     Metric { name, unit, about }
 }
 
-/// All metrics in the order of the columns: of the entry's team, of its opponent's, and of the
-/// game.
+/// All metrics in the order of the columns: those of the entry's team, of its opponent's, and of
+/// the game.
 pub const METRICS: [Metric; 30] = [
     metric("win_share", "", "1 for a win, 0.5 for a draw"),
     metric("score", "", "points"),

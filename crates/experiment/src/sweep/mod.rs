@@ -1,10 +1,10 @@
-//! How much sea, noise and failure a team tolerates: the same games at many points of a space of
-//! scenarios.
+//! Sweeps measure how much sea, noise and failure a team tolerates: the same games at many points
+//! of a space of scenarios.
 //!
 //! A [`Plan`] lists the games of a sweep file. [`play()`] plays any range of them in this process,
 //! on several threads, and returns a [`Row`] for each, in order. A [`Study`] stores the results in
-//! a folder and can be resumed; a [`Report`] summarises them. Results depend only on the plan: not
-//! on the number of threads, on which machine played which games, or on interruptions.
+//! a folder and can be resumed; a [`Report`] summarises them. Results depend only on the plan, not
+//! on the number of threads, the machines that played the games, or interruptions.
 
 mod axis;
 mod effects;

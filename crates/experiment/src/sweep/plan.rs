@@ -31,7 +31,7 @@ pub type Point = Vec<AxisValue>;
 /// One game of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Job {
-    /// Its index in the order of the sweep.
+    /// The game's index in the order of the sweep.
     pub index: usize,
     /// The index of the point.
     pub point: usize,
@@ -47,11 +47,11 @@ impl Plan {
     /// The games of a sweep, after checking the game at every point.
     ///
     /// # Errors
-    /// All problems at any point, and a grid of more than 100,000 points.
+    /// All problems at any point, or a grid of more than 100,000 points.
     pub fn new(sweep: &Sweep) -> Result<Plan, Problems> {
         let plan = Plan::unchecked(sweep, Arc::default())?;
         let mut problems = vec![];
-        // At other points, entries and sides differ only in strategies.
+        // At all other points, entries and sides differ only in strategies.
         let of_points = (0..plan.points.len()).map(|point| (point, 0));
         for (point, entry) in of_points.chain((1..sweep.entries.len()).map(|entry| (0, entry))) {
             if let Err(Problems(found)) = plan.scenario(point, entry, 0) {
@@ -210,13 +210,13 @@ impl Plan {
     /// A plan packed elsewhere. Its points are not checked again.
     ///
     /// # Errors
-    /// [`UnpackError`] if it is damaged or was packed by another version of Squall.
+    /// [`UnpackError`] if it is damaged or was packed by a different version of Squall.
     pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
         packed.unpack(Plan::unchecked, Plan::digest)
     }
 }
 
-/// The file that a setting names, if it names one.
+/// The file that a setting names, if any.
 fn file_of(setting: &Setting) -> Option<PathBuf> {
     let named: Option<String> = serde_json::from_str(&setting.value).ok();
     Some(
@@ -260,7 +260,7 @@ fn points(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
             sampled(&|i, k| columns[k][i])
         }
         Design::Sobol => {
-            // The generator takes a 32-bit seed, and one sequence has at most 65536 points.
+            // The generator takes a 32-bit seed, and a sequence has at most 65536 points.
             let seed = (sweep.seed ^ (sweep.seed >> 32)) as u32;
             sampled(&|i, k| {
                 f64::from(sobol_burley::sample(

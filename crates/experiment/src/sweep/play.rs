@@ -19,7 +19,7 @@ use std::sync::atomic::AtomicBool;
 /// A game that was played or could not start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Played {
-    /// Its row in the table of games.
+    /// The game's row in the table of games.
     pub row: Row,
     /// The measurements by vehicle.
     pub boats: Vec<BoatRow>,
@@ -30,9 +30,9 @@ pub struct Played {
 pub struct BoatRow {
     /// The measurements common to all games.
     pub statistics: BoatStatistics,
-    /// Energy drawn from its battery, kJ; NaN without one.
+    /// Energy drawn from the boat's battery, kJ; NaN without a battery.
     pub energy_kj: f64,
-    /// Whether it belongs to the entry.
+    /// Whether the boat belongs to the entry.
     pub is_own: bool,
 }
 
@@ -59,7 +59,7 @@ impl Loaded {
 }
 
 /// Plays the games from `from` to `to` - 1 on several threads until all are played or `stop` is
-/// set, and passes each to `take` in order. Games cut short by `stop`, and all after them, are
+/// set, and passes each to `take` in order. Games cut short by `stop`, and all later games, are
 /// omitted.
 ///
 /// # Errors
@@ -114,7 +114,7 @@ struct Watch<'a> {
     statistics: StatisticsBuilder,
     /// The smallest distance between the centres of two boats, m.
     closest_m: f64,
-    /// By team: the smallest distance of its boats to the edge of the field, m.
+    /// By team: the smallest distance of its boats from the edge of the field, m.
     edges_m: [f64; 2],
     /// The index of the entry's team.
     side: usize,

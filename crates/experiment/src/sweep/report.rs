@@ -37,7 +37,7 @@ pub struct Report {
     pub games_done: usize,
     /// The keys of the axes.
     pub axes: Vec<String>,
-    /// What the axes vary, with units, from the reference of scenario files.
+    /// The meanings of the axes, with units, from the reference of scenario files.
     pub axis_meanings: Vec<Option<String>>,
     /// The names of the entries.
     pub entries: Vec<String>,
@@ -47,9 +47,9 @@ pub struct Report {
     pub points: Vec<PointReport>,
     /// The effect of each axis on each entry.
     pub effects: Vec<Effect>,
-    /// The interactions of pairs of axes, the significant ones first.
+    /// The interactions of pairs of axes, significant ones first.
     pub interactions: Vec<Interaction>,
-    /// The games that each entry did not win, with the worst score difference.
+    /// The games that each entry did not win, worst score difference first.
     pub worst: Vec<Worst>,
     /// Games that could not start.
     pub failures: Vec<Failure>,
@@ -58,13 +58,13 @@ pub struct Report {
 /// The results of the entries at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointReport {
-    /// The values of the axes as text.
+    /// The values of the axes as strings.
     pub values: Vec<String>,
     /// The number of seeds with all games played.
     pub seeds: usize,
     /// The results by entry.
     pub entries: Vec<EntryAtPoint>,
-    /// Each other entry minus the first, on the same seeds.
+    /// Each other entry minus the first, for the same seeds.
     pub differences: Vec<Difference>,
     /// The command that replays one of its games.
     pub command: String,
@@ -75,7 +75,7 @@ pub struct PointReport {
 pub struct EntryAtPoint {
     /// Its name.
     pub entry: String,
-    /// By metric; `None` if no game has it.
+    /// By metric; `None` if no game has a value.
     pub metrics: Vec<Option<Estimate>>,
 }
 
@@ -97,7 +97,7 @@ pub struct Worst {
     pub entry: String,
     /// The game's index in the tables.
     pub game: usize,
-    /// The values of the axes as text.
+    /// The values of the axes as strings.
     pub values: Vec<String>,
     /// The points of the entry and of its opponent.
     pub score: [f64; 2],
@@ -169,7 +169,7 @@ impl Report {
 /// The mean of both sides, by point, entry and seed.
 fn observations(plan: &Plan, rows: &[Row]) -> Observations {
     let entries = plan.sweep().entries.len();
-    // A stopped sweep may have played few of a million seeds.
+    // A stopped sweep may have played only a few of a million seeds.
     let seeds = (plan.seeds() as usize).min(rows.len().div_ceil(2 * entries));
     let of_seed = |point: usize, seed: usize| -> Option<Vec<Metrics>> {
         let first = point * plan.games_per_point() + seed * 2 * entries;
@@ -235,7 +235,7 @@ fn point_report(
     }
 }
 
-/// The games that each entry lost or drew, the largest margin first.
+/// The games that each entry lost or drew, largest margin first.
 fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
     let mut worst = vec![];
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {

@@ -2,7 +2,7 @@
 //!
 //! `games.csv` gets one line per game, in order; `boats.csv` has a line for each boat of each game;
 //! `sums.txt` has a checksum of each game's lines in both. A study resumes after the last game
-//! whose lines are complete and match their checksums. Lines torn off when the machine stopped, or
+//! whose lines are complete and match their checksums. Lines truncated when the machine stopped, or
 //! changed since, are replaced by playing their games again.
 
 use super::plan::Plan;
@@ -69,7 +69,7 @@ pub enum StudyError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The study belongs to another sweep.
+    /// The study belongs to a different sweep.
     #[error(
         "{} contains a different sweep: the files, the seed, the number of games or Squall's version have \
          changed; expected digest {expected}, found {found}",
@@ -111,8 +111,8 @@ impl Study {
         for (name, head) in heads(plan) {
             write(&folder.join(name), &head)?;
         }
-        // Written last: a folder without it contains no study, whatever a full disk has left of the
-        // others.
+        // Write it last: a folder without it contains no study, whatever parts of the other files a
+        // full disk has left.
         write(&folder.join(PLAN), &(plan.digest() + "\n"))?;
         Study::open(folder, 0)
     }
@@ -120,8 +120,8 @@ impl Study {
     /// Resumes a study from the first game without complete lines.
     ///
     /// # Errors
-    /// [`StudyError`] if a file cannot be read or written, or if the folder contains no study or
-    /// one of another plan.
+    /// [`StudyError`] if a file cannot be read or written, or if the folder contains no study or a
+    /// study of a different plan.
     pub fn resume(folder: &Path, plan: &Plan) -> Result<Study, StudyError> {
         let found = text_if_any(&folder.join(PLAN))?.trim().to_owned();
         if found.is_empty() {
@@ -173,7 +173,7 @@ impl Study {
         })
     }
 
-    /// The number of games in it, which is the index of the next one.
+    /// The number of games in the study, which is the index of the next one.
     pub fn done(&self) -> usize {
         self.done
     }
@@ -181,7 +181,7 @@ impl Study {
     /// Adds the next game.
     ///
     /// # Errors
-    /// [`StudyError`] if a file cannot be written; its previous content stays intact.
+    /// [`StudyError`] if a file cannot be written; its previous content remains intact.
     ///
     /// # Panics
     /// If it is not the next one.
@@ -190,16 +190,16 @@ impl Study {
         self.add_lines(played.row.job.index, &games, &boats)
     }
 
-    /// Adds the lines of the next game, as [`lines`] makes them.
+    /// Adds the lines of the next game, as created by [`lines`].
     ///
     /// # Errors
-    /// [`StudyError`] if a file cannot be written; its previous content stays intact.
+    /// [`StudyError`] if a file cannot be written; its previous content remains intact.
     ///
     /// # Panics
     /// If it is not the next one.
     pub fn add_lines(&mut self, index: usize, game: &str, boats: &str) -> Result<(), StudyError> {
         assert_eq!(index, self.done, "games come in order");
-        // The checksum is written last, to confirm the other lines.
+        // Write the checksum last, to confirm the other lines.
         let folder = &self.folder;
         let sum = sum_line(game, boats);
         self.boats
@@ -282,8 +282,8 @@ pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
     )
 }
 
-/// The games in `text`, in the format of `games.csv`, up to the first line that is incomplete or of
-/// another plan.
+/// The games in `text`, in the format of `games.csv`, up to the first line that is incomplete or
+/// belongs to a different plan.
 pub fn rows_in(plan: &Plan, text: &str) -> Vec<Row> {
     table::csv_rows(plan, text).map(|(row, _)| row).collect()
 }
@@ -303,7 +303,7 @@ fn sum_line(game: &str, boats: &str) -> String {
 }
 
 /// The number of games that are complete in both tables and match their checksums, and the lengths
-/// of the three files up to there; the lengths are zero if the headers are wrong.
+/// of the three files up to that point; the lengths are zero if the headers are wrong.
 fn whole(plan: &Plan, [games, boats, sums]: &[String; 3]) -> (usize, [usize; 3]) {
     let [(_, games_head), (_, boats_head), _] = heads(plan);
     if !games.starts_with(&games_head) || !boats.starts_with(&boats_head) {
@@ -346,8 +346,8 @@ fn write_plan(folder: &Path, plan: &Plan) -> Result<(), StudyError> {
     write(&folder.join(PACKED_PLAN), &(packed + "\n"))
 }
 
-/// The text of a file; empty if there is none.
-// Anything else there is an error: writing to a named pipe would wait for a reader.
+/// The content of a file; empty if the file does not exist.
+// Anything else at the path is an error: writing to a named pipe would wait for a reader.
 fn text_if_any(path: &Path) -> Result<String, StudyError> {
     match text(path) {
         Err(StudyError::Io { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => {

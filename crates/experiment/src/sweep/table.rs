@@ -17,9 +17,9 @@ pub struct Row {
     pub job: Job,
     /// The number of boats in the game.
     pub boats: usize,
-    /// Digest of the final state and of all events, hex; empty if it could not start.
+    /// Digest of the final state and all events, in hex; empty if the game could not start.
     pub digest: String,
-    /// The measurements, or why it could not start.
+    /// The measurements, or why the game could not start.
     pub result: Result<Metrics, String>,
 }
 
@@ -46,7 +46,7 @@ const BOATS: &str = "boats";
 /// The last columns.
 const LAST: [(&str, Kind); 2] = [("digest", Kind::Text), ("error", Kind::Text)];
 
-/// The columns; values of an axis are numbers if all of them are.
+/// The columns; the values of an axis are numbers if all of them are numeric.
 fn columns(plan: &Plan) -> impl Iterator<Item = (&str, Kind)> {
     let is_number = |axis: usize| {
         plan.points()
@@ -113,7 +113,7 @@ pub(super) fn csv_line(plan: &Plan, row: &Row) -> String {
     record(cells(plan, row))
 }
 
-/// The games with complete lines, from the first on, each with the offset of its line's end.
+/// The games with complete lines, from the first on, each with the offset of the end of its line.
 pub(super) fn csv_rows<'a>(
     plan: &'a Plan,
     text: &'a str,
@@ -172,13 +172,13 @@ pub(super) fn cell_of(number: f64) -> String {
     }
 }
 
-/// The measurements that the first cells contain as [`metrics_cells`] wrote them.
+/// The measurements in the first cells, as written by [`metrics_cells`].
 fn metrics_in<'a>(cells: impl Iterator<Item = &'a str>) -> Option<Metrics> {
     let numbers: Option<Vec<f64>> = cells.take(METRICS.len()).map(number_of).collect();
     Some(Metrics(numbers?.try_into().ok()?))
 }
 
-/// The number that [`cell_of`] wrote.
+/// A number as written by [`cell_of`].
 fn number_of(cell: &str) -> Option<f64> {
     if cell.is_empty() {
         Some(f64::NAN)

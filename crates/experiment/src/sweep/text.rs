@@ -13,10 +13,10 @@ const COLUMNS: [(&str, &str, f64, usize); 5] = [
     ("out_of_bounds", "leaves field", 1.0, 1),
     ("contacts", "contacts", 1.0, 1),
 ];
-/// The maximum number of interactions and of worst games shown.
+/// The maximum numbers of interactions and of worst games shown.
 const SHOWN: usize = 6;
 
-/// The report as text, at most 80 columns wide except for commands.
+/// The report in text form, at most 80 columns wide except for commands.
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
     let mut line = |line: String| {
@@ -93,7 +93,7 @@ fn table(effect: &Effect, line: &mut impl FnMut(String)) {
     }
 }
 
-/// Differences from the first entry in the fraction of games won, at the points where they are
+/// Differences from the first entry in the fraction of games won, at points where they are
 /// significant.
 fn differences(report: &Report, line: &mut impl FnMut(String)) {
     let Some(index) = Metric::place("win_share") else {

@@ -1,8 +1,7 @@
 //! The results of a league: games played before are not repeated when new entries join.
 //!
-//! Results are a text of one JSON line per game, to which lines are only appended. A game is
-//! identified by its parsed files and its seed: changing a strategy gives new games, renaming it
-//! does not.
+//! Results are one JSON line per game, to which lines are only appended. A game is identified by
+//! its parsed files and its seed: changing a strategy yields new games, renaming it does not.
 
 use super::plan::Plan;
 use super::play::Record;
@@ -12,13 +11,13 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
 
-/// Precedes the checksum of the rest of the line; the last key of a line.
+/// The last key of a line, which precedes the checksum of the rest of the line.
 const SUM: &str = ",\"sum\":\"";
 
 /// The known games of a league.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct League {
-    /// Results by pairing, as in [`Plan::pairings`], and by seed, with the number of their line.
+    /// Results by pairing, as in [`Plan::pairings`], and by seed, with their line number.
     known: BTreeMap<(String, u64), (usize, Result<Game, String>)>,
 }
 
@@ -50,7 +49,7 @@ pub struct LeagueError {
 }
 
 impl League {
-    /// Parses the games of a text. A last line without a newline is incomplete and is ignored.
+    /// Parses the games in `text`. A last line without a newline is incomplete and is ignored.
     ///
     /// # Errors
     /// [`LeagueError`] if any other line is not a game.
@@ -92,7 +91,7 @@ impl League {
     /// The line of a game.
     ///
     /// # Panics
-    /// If the game is not part of the plan that these pairings belong to.
+    /// If the game is not part of the plan to which these pairings belong.
     pub fn line(plan: &Plan, pairings: &[String], record: &Record) -> String {
         let [blue, red] = record
             .of
@@ -115,7 +114,7 @@ impl League {
         format!("{}{SUM}{sum}\"}}\n", &body[..body.len() - 1])
     }
 
-    /// The known games of a plan, in the order in which they were played, and the indices of the
+    /// The known games of a plan, in the order in which they were played, and the indices of all
     /// others.
     pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<Record>, Vec<usize>) {
         let mut known = vec![];

@@ -30,13 +30,13 @@ pub struct Match {
 }
 
 impl Plan {
-    /// The games of a tournament: of every entry, or of the challenger, against every other. All
-    /// pairings play the same seeds, each of them twice with sides exchanged. An entry against
-    /// itself plays each once, since exchanging sides gives the same game.
+    /// The games of a tournament: every entry, or the challenger, against every other entry. All
+    /// pairings play the same seeds, each of them twice with sides exchanged. An entry plays each
+    /// seed only once against itself, since exchanging sides would give the same game.
     ///
     /// # Errors
     /// All problems in the files and their combination; also a game with real boats, which cannot
-    /// be played here.
+    /// be played in a tournament.
     pub fn new(tournament: &Tournament) -> Result<Plan, Problems> {
         Plan::of_files(tournament, Arc::default())
     }
@@ -95,12 +95,12 @@ impl Plan {
         &self.tournament
     }
 
-    /// The names of the game's teams, the first one first.
+    /// The names of the game's teams, first team first.
     pub fn teams(&self) -> &[String] {
         &self.teams
     }
 
-    /// The number of seeds, starting at the tournament's first.
+    /// The number of seeds, starting with the tournament's first seed.
     pub fn seeds(&self) -> u64 {
         self.seeds
     }
@@ -116,7 +116,7 @@ impl Plan {
             .map_or(usize::MAX, |seeds| seeds.saturating_mul(self.rounds.len()))
     }
 
-    /// The game at `index`, ordered by seed: an early stop leaves complete seeds.
+    /// The game at `index`, ordered by seed, so that an early stop leaves complete seeds.
     ///
     /// # Panics
     /// If `index` is out of range.
@@ -124,7 +124,7 @@ impl Plan {
         assert!(index < self.games(), "match {index} of {}", self.games());
         let (sides, scenario) = &self.rounds[index % self.rounds.len()];
         // Ordered by seed: a seed counts only if all its games were played. Otherwise an entry
-        // would be measured against some of its opponents, perhaps the easy ones.
+        // would be measured against only some of its opponents, perhaps the easy ones.
         let seed = self
             .tournament
             .seed
@@ -151,8 +151,9 @@ impl Plan {
         of.seed.wrapping_sub(self.tournament.seed) as usize * self.rounds.len() + round
     }
 
-    /// Identifies the games of each seed, in order, by their parsed files. Another version of
-    /// Squall or another file gives another game; other entry names or file locations do not.
+    /// Identifies the games of each seed, in order, by their parsed files. A different version of
+    /// Squall or a different file gives different games; other entry names or file locations do
+    /// not.
     pub fn pairings(&self) -> Vec<String> {
         self.rounds
             .iter()
@@ -186,7 +187,7 @@ impl Plan {
     /// A plan packed elsewhere.
     ///
     /// # Errors
-    /// [`UnpackError`] if it is damaged or was packed by another version of Squall.
+    /// [`UnpackError`] if it is damaged or was packed by a different version of Squall.
     pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
         packed.unpack(Plan::of_files, Plan::digest)
     }

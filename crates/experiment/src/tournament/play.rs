@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 pub struct Record {
     /// The match.
     pub of: Match,
-    /// Its result, or why it could not start.
+    /// The result, or why the game could not start.
     pub result: Result<Game, String>,
 }
 
@@ -29,7 +29,7 @@ pub struct Observer<B, S> {
 }
 
 /// Plays the games of a plan with these indices on several threads, until all are played or `stop`
-/// is set, and passes each to `take` in order. Games cut short by `stop`, and all after them, are
+/// is set, and passes each to `take` in order. Games cut short by `stop`, and all later games, are
 /// omitted.
 ///
 /// # Panics

@@ -2,8 +2,8 @@
 //!
 //! The model is Bradley and Terry's (Biometrika 1952): the odds of winning are the ratio of two
 //! strengths, and the Elo rating is the logarithm of the strength, 400 points for a factor of 10. A
-//! draw is half a win for each. The maximum-likelihood strengths are computed from all games at
-//! once, so that the order of games does not matter.
+//! draw counts as half a win for each entry. The maximum-likelihood strengths are computed from all
+//! games at once, so that the order of games does not matter.
 
 use crate::estimate::{OBSERVATIONS_MIN, quantile};
 use nalgebra::{DMatrix, DVector};
@@ -26,7 +26,7 @@ pub struct Rating {
 pub struct Meeting {
     /// The indices of the entries.
     pub sides: [usize; 2],
-    /// The result of the first: 1 for a win, a half for a draw.
+    /// The result of the first entry: 1 for a win, a half for a draw.
     pub share: f64,
 }
 
@@ -34,10 +34,10 @@ pub struct Meeting {
 const MEAN_ELO: f64 = 1500.0;
 /// Elo points per factor of e in the odds: 400 / ln 10.
 const ELO: f64 = 400.0 / std::f64::consts::LN_10;
-/// The prior: this many wins and losses of every entry against an average one. Without it, an entry
-/// that wins all games would be infinitely strong.
+/// The prior: number of wins and losses of every entry against an average entry. Without it, an
+/// entry that wins all games would be infinitely strong.
 const PRIOR: f64 = 1.0;
-/// The maximum number and length of Newton steps: farther away, the curvature is meaningless.
+/// The maximum number and length of Newton steps: beyond this length, the curvature is meaningless.
 const STEPS_MAX: usize = 200;
 const STEP_MAX: f64 = 1.0;
 const CLOSE: f64 = 1e-10;
@@ -57,7 +57,7 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     let mut curvature = DMatrix::identity(entries, entries);
     // All games are available at once. Ratings that change game by game (Elo's own rule, Glicko,
     // TrueSkill, Weng-Lin) would only add a dependence on the order of games, and a rate of change
-    // for players that do not change.
+    // although the players do not change.
     for _ in 0..STEPS_MAX {
         let slope = slope_of(&all, &strengths) + prior_slope(&strengths);
         curvature = curvature_of(&all, &strengths);
@@ -85,12 +85,12 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     (0..entries).map(rating).collect()
 }
 
-/// The expected score of the first of two.
+/// The expected score of the first of two entries.
 fn expected(strengths: &DVector<f64>, [one, other]: [usize; 2]) -> f64 {
     1.0 / (1.0 + math::exp(strengths[other] - strengths[one]))
 }
 
-/// The gradient of the log-likelihood of some games.
+/// The gradient of the log-likelihood for the given games.
 fn slope_of(games: &[Meeting], strengths: &DVector<f64>) -> DVector<f64> {
     let mut slope = DVector::zeros(strengths.len());
     for Meeting { sides, share } in games {
@@ -130,7 +130,7 @@ fn curvature_of(games: &[Meeting], strengths: &DVector<f64>) -> DMatrix<f64> {
     curvature
 }
 
-/// The half width of each interval, in units of strength; `None` with fewer than five seeds.
+/// Half the width of each interval, in units of strength; `None` with fewer than five seeds.
 fn errors(
     rounds: &[Vec<Meeting>],
     strengths: &DVector<f64>,
@@ -145,11 +145,12 @@ fn errors(
         let slope = slope_of(round, strengths);
         spread += &slope * slope.transpose();
     }
-    // The wider of the two, since an entry that always wins would have an interval of zero by seeds
-    // alone. In 200 trials with known strengths, 19 of 20 intervals contain the truth, which a test
-    // counts.
+    // The wider of the two, since by seeds alone an entry that always wins would have an interval
+    // of zero. In 200 trials with known strengths, 19 of 20 intervals contain the true value, as a
+    // test verifies.
     let clustered = &covariance * spread * &covariance * (seeds / (seeds - 1.0));
-    // Only the difference of an entry from the mean of all is known; the mean itself is arbitrary.
+    // Only an entry's difference from the mean of all entries is known; the mean itself is
+    // arbitrary.
     let centre = DMatrix::identity(entries, entries)
         - DMatrix::from_element(entries, entries, 1.0 / entries as f64);
     let of_mean = |covariance: DMatrix<f64>| (&centre * covariance * &centre).diagonal();
@@ -207,7 +208,7 @@ mod tests {
             rated[0].high.expect("an interval") - rated[0].elo > 100.0,
             "equal seeds do not mean no error: {rated:?}"
         );
-        // Four seeds, which would give an interval of thousands.
+        // Four seeds would give an interval of thousands.
         let rated = ratings(2, &meetings([0, 1], 4, 4));
         assert!(
             rated
@@ -215,7 +216,7 @@ mod tests {
                 .all(|one| one.low.is_none() && one.high.is_none()),
             "{rated:?}"
         );
-        // An entry against itself, and a single seed.
+        // An entry against itself, and only one seed.
         let rated = ratings(
             2,
             &[vec![

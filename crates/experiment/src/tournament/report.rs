@@ -10,20 +10,20 @@ use rules::count::Counts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// The maximum number of times at which the history has ratings.
+/// The maximum number of times in the history of ratings.
 const STANDINGS_MAX: usize = 50;
 
-/// The report of a tournament, as `--json` writes it.
+/// The report of a tournament, as written by `--json`.
 ///
 /// Only seeds with all games played count in [`Report::entries`] and [`Report::matrix`]; with a
-/// partial seed, an entry would be measured against some of its opponents.
+/// partial seed, an entry would be measured against only some of its opponents.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// The tournament's name.
     pub tournament: String,
     /// The version of Squall that played it.
     pub version: String,
-    /// The commit it was built from; the command fills it in.
+    /// The commit from which it was built; the command fills it in.
     pub commit: String,
     /// The game file.
     pub game: String,
@@ -41,13 +41,13 @@ pub struct Report {
     pub seeds_counted: u64,
     /// The number of games not played because the tournament was stopped.
     pub games_unplayed: u64,
-    /// The number of games played but not counted, because others of their seed are missing.
+    /// The number of games played but not counted, because other games of their seed are missing.
     pub games_left_out: u64,
     /// Games per second of wall-clock time; the command fills it in.
     pub rate: Option<f64>,
     /// The entries, by descending rating.
     pub entries: Vec<Row>,
-    /// Each entry against each other, rows and columns in the same order.
+    /// Each entry against each other; rows and columns are in the same order.
     pub matrix: Vec<Cell>,
     /// The ratings over time: after the first games, in the order in which they were played.
     #[serde(default)]
@@ -77,9 +77,9 @@ pub struct Row {
     pub rating: Rating,
     /// Points.
     pub score: Estimate,
-    /// Flags taken.
+    /// Flags grabbed.
     pub grabs: Estimate,
-    /// Flags brought home.
+    /// Flags captured.
     pub captures: Estimate,
     /// Opponents tagged.
     pub tags: Estimate,
@@ -87,7 +87,7 @@ pub struct Row {
     pub tagged: Estimate,
     /// Times a boat left the field.
     pub out_of_bounds: Estimate,
-    /// Collisions of its boats; one between teammates counts twice.
+    /// Collisions of the entry's boats; a collision between teammates counts twice.
     pub collisions: Estimate,
     /// Games won.
     pub wins: u64,
@@ -112,7 +112,7 @@ pub struct Cell {
     pub draws: u64,
     /// Games that the column won.
     pub losses: u64,
-    /// The row's share of the decisive games; `None` if there was none. The interval is over
+    /// The row's share of the decisive games; `None` without decisive games. The interval is over
     /// seeds.
     pub won_of_decided: Option<Estimate>,
     /// The mean points of the row and of the column.
@@ -175,7 +175,7 @@ pub struct Failure {
     pub why: String,
 }
 
-/// A game from the side of one entry.
+/// A game from the point of view of one entry.
 struct Appearance<'a> {
     game: &'a Game,
     side: usize,
@@ -183,7 +183,7 @@ struct Appearance<'a> {
 }
 
 impl Report {
-    /// The report on the records of a plan's games, in the order in which they were played.
+    /// The report for the records of a plan's games, in the order in which they were played.
     pub fn new(plan: &Plan, played: &[Record]) -> Report {
         let tournament = plan.tournament();
         let mut records = played.to_vec();
@@ -301,7 +301,7 @@ fn history<'a>(played: impl Iterator<Item = &'a Record>, ranks: &[usize]) -> Vec
             sides: one.sides.map(|entry| place(entry).unwrap_or_default()),
             ..*one
         };
-        // As one seed: intervals are not needed.
+        // All as one seed, since intervals are not needed.
         let rated = ratings(entries.len(), &[all[..games].iter().map(renamed).collect()]);
         Standings {
             games,

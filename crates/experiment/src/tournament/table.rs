@@ -1,4 +1,4 @@
-//! The report of a tournament as tables: as text, and as CSV.
+//! The report of a tournament as tables, in text form and as CSV.
 
 use super::rating::Rating;
 use super::report::{Cell, Report, Row};
@@ -23,8 +23,8 @@ const COLUMNS: [Column; 7] = [
 /// The default width of tables without a terminal, characters.
 pub const WIDTH: usize = 120;
 
-/// The report as text, in tables of at most `columns` characters if names allow it; each command
-/// stays on one line.
+/// The report in text form, with tables of at most `columns` characters if names allow it; each
+/// command stays on one line.
 pub fn text(report: &Report, columns: usize) -> String {
     let mut text = String::new();
     let sea = report
@@ -113,7 +113,7 @@ fn cells(report: &Report, heading: &str, of: impl Fn(&Row) -> String) -> Cells {
     (heading.to_owned(), report.entries.iter().map(of).collect())
 }
 
-/// A table with a line for each entry. Columns beyond the width are moved to another table below.
+/// A table with a line for each entry. Columns beyond the width are moved to a second table below.
 fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
     let name = width(names);
     let wide = |(heading, cells): &Cells| {
@@ -157,7 +157,7 @@ fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
     }
 }
 
-/// The wins of each entry against each other.
+/// The wins of each entry against each other entry.
 fn matrix(text: &mut String, report: &Report, columns: usize) {
     add_line(
         text,

@@ -43,7 +43,7 @@ fn check(bytes: &[u8]) {
         }
     }
     match GameName::new(&text) {
-        // The name becomes part of keys, where these characters have a meaning.
+        // The name becomes part of key expressions, in which these characters have a meaning.
         Ok(name) => assert!(
             name.as_str() == text && !text.contains(['/', '*', '$', '#', '?']) && !text.is_empty()
         ),

@@ -15,7 +15,7 @@ pub(super) const TARGET: Target = Target {
     allocated_max: (1 << 24, 20_000),
 };
 
-/// Frames from another program, one by one and together.
+/// Frames from a different program, separately and together.
 fn seeds() -> Vec<Vec<u8>> {
     let list = include_str!("../../../../gateway/tests/mavlink/golden.txt");
     let lines = list
@@ -48,15 +48,15 @@ fn check(bytes: &[u8]) {
 fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<String>, Counts) {
     let mut framer = Framer::new();
     let mut received = Vec::new();
-    // As text, because NaN does not equal itself.
+    // Compared as strings, because NaN does not equal itself.
     pieces
         .into_iter()
         .for_each(|piece| framer.push(piece, &mut |message| received.push(format!("{message:?}"))));
     (received, framer.counts().clone())
 }
 
-/// Valid frames with arbitrary payloads of every supported message. Boat and ground station must
-/// accept them all.
+/// Valid frames with arbitrary payloads of every supported message, all of which boat and ground
+/// station must accept.
 fn repaired(bytes: &[u8]) {
     let gateway = Gateway {
         protocol: BoatProtocol::Mavlink,

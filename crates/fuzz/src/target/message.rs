@@ -1,4 +1,4 @@
-//! Messages of every tick (CDR): their decoding, and their effect on sim, minds and observers.
+//! Per-tick messages (CDR): their decoding, and their effect on sim, minds and observers.
 
 use super::{Target, check_shown, mutations};
 use crate::played::{self, Played, mixed, played};
@@ -28,7 +28,7 @@ pub(super) const TARGET: Target = Target {
     allocated_max: (32 << 20, 500),
 };
 
-/// The ticket of every node.
+/// The ticket of all nodes.
 const TICKET: u64 = 7;
 
 fn seeds() -> Vec<Vec<u8>> {
@@ -100,7 +100,7 @@ fn seeds() -> Vec<Vec<u8>> {
     seeds
 }
 
-/// Readers of messages in the middle of a game.
+/// Recipients of messages in the middle of a game.
 struct Readers {
     scenario: Scenario,
     contest: Contest,
@@ -214,7 +214,7 @@ fn check(bytes: &[u8]) {
     });
 }
 
-/// Decodes a message. Its encoding must have the same length and survive another round trip.
+/// Decodes a message. Its encoding must have the same length and survive a second round trip.
 fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
     match codec::decode::<M>(bytes) {
         Ok(message) => {
@@ -233,7 +233,7 @@ fn read<M: Message + Serialize + DeserializeOwned>(bytes: &[u8]) -> Option<M> {
 }
 
 impl Readers {
-    /// Checks that the game advances with finite positions after any message; then restores its
+    /// Checks that the game continues with finite positions after any message; then restores its
     /// state.
     fn go_on(&mut self) {
         self.contest.advance();

@@ -31,7 +31,7 @@ pub struct Target {
     pub change: fn(Vec<Vec<u8>>) -> Change,
     /// Checks all guarantees on an input. Panics if one is violated.
     pub check: fn(&[u8]),
-    /// Limit on the bytes allocated by a check in total: a constant, and a multiple of the input's
+    /// Limit on the total bytes allocated by a check: a constant, and a multiple of the input's
     /// length.
     pub allocated_max: (usize, usize),
 }
@@ -64,8 +64,7 @@ fn mutations(seeds: Vec<Vec<u8>>) -> Change {
     })
 }
 
-/// The result of `read` for bytes in pieces of any size, which must be the same as for all bytes at
-/// once.
+/// The result of `read` for chunks of any size, which must be the same as for all bytes at once.
 fn in_pieces<T: PartialEq + Debug>(bytes: &[u8], read: impl Fn(usize) -> T) -> T {
     let whole = read(usize::MAX);
     let step = 1 + usize::from(bytes.first().copied().unwrap_or_default()) % 97;

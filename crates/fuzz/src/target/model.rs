@@ -1,5 +1,5 @@
-//! Trained policies (ONNX): a file is rejected, or its network responds to any input, and always in
-//! the same way.
+//! Trained policies (ONNX): a file is rejected, or its network responds to any input, always in the
+//! same way.
 
 use super::{Target, check_shown, mutations};
 use onnx::{Head, Layer, Network, Perceptron};
@@ -9,7 +9,7 @@ use scenario::policy::{PartialSpec, PolicyModel, PolicySpec};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Limits on weights and computed numbers matter here, not the file's length.
+/// This target tests limits on weights and computed numbers, not on the file's length.
 pub(super) const TARGET: Target = Target {
     name: "model",
     seeds,
@@ -25,7 +25,7 @@ const SAID: PartialSpec = PartialSpec {
     period_s: Some(0.1),
 };
 
-/// Inputs of a network: zero, and values of a broken sensor.
+/// Inputs of a network: zero, and values of a faulty sensor.
 const GIVEN: [f32; 4] = [0.0, -1.0, f32::MAX, f32::NAN];
 
 fn seeds() -> Vec<Vec<u8>> {
@@ -44,7 +44,7 @@ fn seeds() -> Vec<Vec<u8>> {
     names.into_iter().map(read).chain([own()]).collect()
 }
 
-/// A model as a training run writes it.
+/// A model as written by a training run.
 fn own() -> Vec<u8> {
     let spec = PolicySpec {
         observation: ObservationSpace::Squall {

@@ -1,5 +1,5 @@
-//! Packets of MOOS clients and datagrams of pShare: a stream may be split anywhere, what was read
-//! can be written and read again, and a database survives it.
+//! Packets of MOOS clients and datagrams of pShare: a stream may be split anywhere, decoded
+//! messages survive a round trip, and a database handles any of them.
 
 use super::{Target, in_pieces, mutations};
 use moos::database::Database;
@@ -13,7 +13,7 @@ pub(super) const TARGET: Target = Target {
     allocated_max: (1 << 20, 2000),
 };
 
-/// Messages of each kind that a database processes, one by one and together.
+/// Messages of each kind that a database processes, separately and together.
 fn seeds() -> Vec<Vec<u8>> {
     let patterns = "AppPattern=p*,VarPattern=NAV_?,Interval=0.1";
     let messages = [
@@ -42,7 +42,7 @@ fn check(bytes: &[u8]) {
     let (_, mail) = database
         .admit(&Msg::text(Kind::DATA, "", "pFuzz", 1e9), 1e9)
         .expect("a name that is free");
-    // As text, because NaN does not equal itself.
+    // Compared as strings, because NaN does not equal itself.
     let (_, packets) = in_pieces(bytes, |size| {
         let (packets, end) = framed(bytes.chunks(size));
         (format!("{packets:?} {end:?}"), packets.len())
@@ -71,7 +71,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// The packets in pieces of a stream, up to the first malformed one.
+/// The packets in chunks of a stream, up to the first malformed one.
 fn framed<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> (Vec<Vec<Msg>>, Option<Malformed>) {
     let mut framer = Framer::default();
     let mut packets = Vec::new();

@@ -3,7 +3,7 @@
 use super::{Target, in_pieces, mutations};
 use gateway::nmea::{ACCEPTED_MAX, Counts, EMITTED_MAX, Framer, Sentence, checksum};
 
-/// Sentence addresses that the codec reads; random fields would rarely match one.
+/// Sentence addresses that the codec understands; random fields would rarely match one.
 const ADDRESSES: [&str; 16] = [
     "PSEAC", "PSEAA", "PSEAB", "PSEAD", "PSEAG", "PSEAR", "OIWPL", "GPGGA", "GPRMC", "GPVTG",
     "GPHDT", "HCHDG", "GPZDA", "VCGLL", "WIMWV", "VWVHW",
@@ -17,7 +17,7 @@ pub(super) const TARGET: Target = Target {
     allocated_max: (1 << 20, 2000),
 };
 
-/// Sentences from real programs and manuals, one by one and together.
+/// Sentences from real programs and manuals, separately and together.
 fn seeds() -> Vec<Vec<u8>> {
     let list = include_str!("../../../../gateway/tests/nmea/golden.txt");
     let sentences = list
@@ -56,7 +56,7 @@ fn check(bytes: &[u8]) {
     read(&format!("{address},{text}"));
 }
 
-/// A byte stream gives the same sentences however it is split, and every `$` is counted.
+/// A byte stream yields the same sentences however it is split, and every `$` is counted.
 fn stream(bytes: &[u8]) {
     let (whole, counts) = in_pieces(bytes, |size| framed(bytes.chunks(size)));
     let begun = bytes.iter().filter(|byte| **byte == b'$').count() as u64;
@@ -100,7 +100,7 @@ fn repaired(line: &[u8]) {
     read(&found[0]);
 }
 
-/// A parsed sentence can be written and read again, and then stays the same.
+/// A parsed sentence survives a round trip, after which it no longer changes.
 fn read(body: &str) {
     let Ok(sentence) = Sentence::parse(body) else {
         return;
@@ -112,7 +112,7 @@ fn read(body: &str) {
     assert_eq!(settled.line(), again.line(), "{body}");
 }
 
-/// The sentence after writing and reading. `None` if a required field stayed empty.
+/// The sentence after a round trip. `None` if a required field was still empty.
 fn reread(sentence: &Sentence) -> Option<Sentence> {
     let wire = sentence.line();
     assert!(wire.len() <= EMITTED_MAX, "{} bytes: {wire}", wire.len());

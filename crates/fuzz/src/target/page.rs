@@ -1,5 +1,5 @@
-//! Browser messages to a page (JSON over WebSocket), showing a recording or a game. Each line is a
-//! message: `~` starts a pong, `!` a binary message.
+//! Browser messages (JSON over WebSocket) to a page that shows a recording or a game. Each line is
+//! a message: `~` starts a pong, `!` a binary message.
 
 use super::{Target, mutations};
 use crate::played::{self, played};
@@ -20,8 +20,8 @@ pub(super) const TARGET: Target = Target {
     allocated_max: (16 << 20, 5000),
 };
 
-/// Maximum number of messages to a page at once: a minute of history in half seconds, events, and
-/// new data.
+/// Maximum number of messages to a page at once: a minute of history in steps of half a second,
+/// events, and new data.
 const SENT_MAX: usize = 300;
 
 static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
@@ -107,8 +107,8 @@ pub(super) fn look_around(recording: Recording) {
     );
 }
 
-/// Sends lines to a session. Every reply has a kind, replies end, and at most two frames are in
-/// flight.
+/// Sends lines to a session. Every reply has a kind, the replies come to an end, and at most two
+/// frames are in flight.
 fn talk(mut session: PageSession, lines: &str, answered: impl Fn(&str, &[String])) {
     let mut now = clock::now();
     let mut under_way = 0_usize;
@@ -142,7 +142,7 @@ fn said(session: &mut PageSession, now: Instant, under_way: &mut usize) -> Vec<S
             Some(Outgoing::Now(_)) => *under_way += 1,
         }
         assert!(*under_way <= 2, "{under_way} frames in flight");
-        // A browser page answers immediately.
+        // A browser answers immediately.
         if let Some(ping) = session.ping() {
             session.receive_pong(ping);
         }

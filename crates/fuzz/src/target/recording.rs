@@ -1,4 +1,4 @@
-//! Recordings of games and gateways (MCAP): every reader, viewer, replay and analysis processes or
+//! Recordings of games and gateways (MCAP): every reader, viewer, replay and analysis accepts or
 //! rejects them.
 
 use super::{Change, Target, check_shown, page};
@@ -149,7 +149,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// Applies every reader to a game's recording.
+/// Runs every reader on a game's recording.
 fn look_at_all_of(recording: Recording, bytes: &[u8]) {
     let series = GameSeries::of(&recording);
     serde_json::to_string(&Summary::of(&recording)).expect("a summary is JSON");
@@ -208,7 +208,7 @@ fn play_again(recording: &Recording) {
 /// An MCAP record: opcode and body.
 type Record = (u8, Vec<u8>);
 
-/// Mutates single records, or the file as a whole.
+/// Mutates individual records, or the file as a whole.
 fn change(seeds: Vec<Vec<u8>>) -> Change {
     let files: Vec<Vec<Record>> = seeds
         .iter()
@@ -274,7 +274,7 @@ fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], all_facts: &[Vec<u8>]
     }
 }
 
-/// The records of a file, with those inside chunks.
+/// The records of a file, including those inside chunks.
 fn records(mut bytes: &[u8]) -> Vec<Record> {
     let mut records = Vec::new();
     while let Some((opcode, length, rest)) = prefix(bytes) {
@@ -318,7 +318,7 @@ fn written(records: &[Record]) -> Vec<u8> {
     bytes
 }
 
-/// The name and facts of a metadata record.
+/// The name and key-value pairs of a metadata record.
 fn facts_of((opcode, body): &Record) -> Option<(Vec<u8>, BTreeMap<String, Vec<u8>>)> {
     let (name, rest) = text(body).filter(|_| *opcode == METADATA)?;
     let (mut list, _) = text(rest)?;
@@ -352,7 +352,7 @@ fn metadata(name: &[u8], facts: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     [with_length(name), with_length(&list)].concat()
 }
 
-/// The checksum of a header's other facts, as the recorder computes it.
+/// The checksum of a header's other key-value pairs, as computed by the recorder.
 fn checksum_of(facts: &BTreeMap<String, Vec<u8>>) -> String {
     let mut hasher = crc32fast::Hasher::new();
     for (key, value) in facts.iter().filter(|(key, _)| *key != "checksum") {

@@ -1,5 +1,5 @@
-//! The control plane (JSON): requests with their proofs, replies, states, and the registry of this
-//! machine.
+//! The control plane (JSON): requests with their proofs, replies, states, and this machine's
+//! registry.
 
 use super::{Target, check_shown, mutations};
 use crate::played::{self, mixed, played};
@@ -201,7 +201,7 @@ fn check(bytes: &[u8]) {
     read::<Water>(bytes);
     read::<Entry>(bytes);
     read::<GatewayEntry>(bytes);
-    // No comparison for equality: a report contains errors.
+    // Not compared for equality, because a report contains errors.
     drop(serde_json::from_slice::<ProgressMessage>(bytes));
     // The numbers are trusted, because a node that joins a game trusts its sim.
     if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_received()) {
@@ -226,7 +226,7 @@ fn read<T: Serialize + DeserializeOwned + PartialEq + Debug>(bytes: &[u8]) -> Op
     }
 }
 
-/// Without the token, no request that needs it is granted.
+/// A request that needs the token is never granted without it.
 fn guarded(bytes: &[u8]) {
     let guard = || Guard::new(Some(TOKEN.clone()));
     match guard().check(GATEWAY_PORT_KEY, bytes, GatewayCommand::needs_token) {
@@ -267,7 +267,7 @@ fn with_challenge(request: &[u8], answer: &[u8]) -> Option<Vec<u8>> {
 
 /// A client accepts any reply, retries a limited number of times, and never reveals the token.
 fn answered(bytes: &[u8]) {
-    // Any challenge is sent back.
+    // The client sends back any challenge.
     let is_known = String::from_utf8_lossy(bytes).contains(&TOKEN.hex());
     let mut asked = 0;
     let command = GatewayCommand::Fleet(FleetCommand::Release);

@@ -1,4 +1,4 @@
-//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. Bases
+//! Scenario files of every kind (TOML): a line with the folder of that kind, then the file. Bases
 //! and references are files in the tree.
 
 use super::{Target, check_shown, mutations};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use tempfile::TempDir;
 
-/// Generous limits: an accepted game is also played briefly, and may have eighty boats.
+/// Generous limits: an accepted game, which may have eighty boats, is also played briefly.
 pub(super) const TARGET: Target = Target {
     name: "scenario",
     seeds,
@@ -36,7 +36,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<Sweep>(),
 ];
 
-/// Copies of the files in the tree, with space for one more.
+/// Copies of the files in the tree, with room for one more.
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("a folder");
     for (path, text) in files() {
@@ -70,7 +70,7 @@ fn files() -> Vec<(PathBuf, Vec<u8>)> {
 
 fn seeds() -> Vec<Vec<u8>> {
     let broken = include_str!("../../../../tests/scenario_files/hostile_values.txt");
-    // A game of a thousand boats costs as much as all the others.
+    // A game of a thousand boats takes as long as all the others together.
     let files = files()
         .into_iter()
         .filter(|(path, _)| !path.ends_with("swarm_500v500.toml"));
@@ -118,7 +118,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// Every problem has a place in an existing file and can be displayed.
+/// Every problem refers to a place in an existing file and can be displayed.
 fn refused(problems: &Problems) {
     assert!(!problems.0.is_empty());
     for problem in &problems.0 {
@@ -189,7 +189,7 @@ fn accepted(kind: Kind, path: &Path) {
     }
 }
 
-/// An accepted game can be sent unchanged, and starts or reports why not. Minds can play it.
+/// An accepted game can be sent unchanged, and either starts or reports why not. Minds can play it.
 fn playable(scenario: &Scenario) {
     let json = serde_json::to_string(scenario).expect("JSON");
     assert_eq!(

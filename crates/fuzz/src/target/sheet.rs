@@ -1,4 +1,4 @@
-//! Tables of numbers from trials (CSV): commands to replay, and logs to fit.
+//! CSV tables from trials: commands to replay, and logs to fit.
 
 use super::{Target, check_shown, mutations};
 use crate::played::scenarios;

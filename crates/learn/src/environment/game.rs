@@ -15,12 +15,12 @@ use scenario::policy::PolicyModel;
 use sim::Contest;
 use std::any::Any;
 
-/// The two sides of a game.
+/// The sides of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
     /// The team of the learning policy.
     pub learner: TeamId,
-    /// Index of the opponent in the setup that plays the other team.
+    /// Index in the setup of the opponent that plays the other team.
     pub opponent: usize,
 }
 
@@ -47,7 +47,7 @@ pub(super) enum Ending {
     /// The game continues.
     None,
     Over,
-    /// The episode has reached its maximum length before the end of the game.
+    /// The episode reached its maximum length before the end of the game.
     CutOff,
 }
 
@@ -72,7 +72,7 @@ impl Game {
                     let pilot = policy_pilot(setup, scenario, vehicle);
                     Box::new(pilot.by_model(PolicyModel::clone(model), false))
                 }
-                // Same as in the arena, but with pilots as minds: a test plays the same game in the
+                // As in the arena, but with pilots as minds: a test plays the same game in the
                 // arena and compares digests.
                 _ => Box::new(pilot(setup, scenario, vehicle)),
             }
@@ -158,7 +158,7 @@ impl Game {
         self.watch = None;
     }
 
-    /// Removes the watch without ending it.
+    /// Removes the watch without signalling the end.
     pub(super) fn forget_watch(&mut self) {
         std::mem::forget(self.watch.take());
     }
@@ -221,11 +221,11 @@ impl Game {
         let step_s = scenario.tick.as_s()
             * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
-            // A potential of the state alone, 0 at the end: it does not change the best policy (Ng,
-            // Harada and Russell, ICML 1999). Places pay the undiscounted gain of a step. A payment
-            // per second failed: half a second on the right course changed the sum by only one per
-            // cent, and boats trained to retreat on 300,000 such samples ended up no closer to home
-            // than stationary ones.
+            // A potential that depends only on the state, and is 0 at the end, does not change the
+            // best policy (Ng, Harada and Russell, ICML 1999). Places pay the undiscounted gain of
+            // a step. A payment per second failed: half a second on the right course changed the
+            // sum by only one per cent, and boats trained to retreat on 300,000 such samples ended
+            // no closer to home than stationary ones.
             let after = if ending == Ending::Over {
                 0.0
             } else {
@@ -247,7 +247,7 @@ impl Game {
     }
 }
 
-/// The pilot of a boat that receives actions or demonstrates a teacher's.
+/// The pilot of a boat that receives actions, or that demonstrates a teacher's actions.
 fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     if let Some(teacher) = &setup.teacher {
         let program = agent::roles::role_in(scenario, vehicle, &teacher.strategy);
@@ -285,7 +285,7 @@ fn draw_side(setup: &Setup, seed: u64) -> Side {
             .rposition(|(weight, _)| *weight > 0.0)
             .unwrap_or_default()
     };
-    // Alternates because the ends of the field differ: the wind has a direction.
+    // Alternate, because the ends of the field differ: the wind has a direction.
     let learner = setup.learner.unwrap_or(TeamId((seed % 2) as u8));
     Side {
         learner,

@@ -32,7 +32,7 @@ pub struct Standing {
 pub struct Finished {
     /// Index of the game.
     pub game: usize,
-    /// Episode number, counted across the games and then the episodes.
+    /// Episode number, counted across the games, then the episodes.
     pub number: u64,
     /// The state of play at the end.
     pub standing: Standing,
@@ -41,7 +41,7 @@ pub struct Finished {
 }
 
 /// The results of a step, one row per boat that may receive actions. Within each game the learning
-/// policy's boats come first, then, if any opponent is a policy, its enemies.
+/// policy's boats come first, then, if any opponent is a policy, those of its enemies.
 #[derive(Debug)]
 pub struct Rows<'a> {
     /// The observations, rows × values.
@@ -51,8 +51,8 @@ pub struct Rows<'a> {
     pub final_observations: &'a mut [f32],
     /// The reward of the step, by row.
     pub rewards: &'a mut [f32],
-    /// By row, whether the next action takes effect: not for a tagged boat, nor where a strategy
-    /// plays the enemies.
+    /// By row, whether the next action takes effect. It does not for a tagged boat, nor if a
+    /// strategy plays the enemies.
     pub counts: &'a mut [bool],
 }
 
@@ -63,7 +63,7 @@ pub struct Games {
     setup: Setup,
     slots: Vec<Slot>,
     starts: Starts,
-    /// None for a single thread: a step is shorter than waking another thread.
+    /// `None` for a single thread, because a step is shorter than waking another thread.
     pool: Option<rayon::ThreadPool>,
     rows_per_game: usize,
     observation_size: usize,
@@ -73,11 +73,11 @@ pub struct Games {
 /// Plays games one after the other.
 struct Slot {
     game: Game,
-    /// The game that ended in the last step, and has been replaced.
+    /// The game that ended in the last step and has been replaced.
     last: Option<Game>,
     /// Number of the current game; grows by the number of slots.
     number: u64,
-    /// Grows likewise. With repeating starts, selects one of them.
+    /// Grows in the same way. With repeating starts, selects one of them.
     seed: u64,
     ended: Option<Finished>,
     /// The teacher's actions in the last step, by row.
@@ -89,8 +89,8 @@ struct Slot {
 }
 
 impl Games {
-    /// Starts `games` games on `threads` threads, watched on request. Seeds count up from `seed`,
-    /// across the games and then the episodes.
+    /// Starts `games` games on `threads` threads, with watches on request. Seeds count up from
+    /// `seed`, across the games, then the episodes.
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot be played.
@@ -160,14 +160,14 @@ impl Games {
         &self.finished
     }
 
-    /// The teacher's actions in a game's last step, by row. None where no action of the policy
+    /// The teacher's actions in a game's last step, by row. `None` if no action of the policy
     /// corresponds.
     pub fn taught(&self, game: usize) -> &[Option<Action>] {
         &self.slots[game].taught
     }
 
     /// A game's values for a critic beyond the observations, row by row: current, and at the end of
-    /// a game that ended in the last step. Rows of boats without actions are left out.
+    /// a game that ended in the last step. Rows of boats without actions are omitted.
     pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
         let [now, last] = &self.slots[game].truth;
         (now, last)
@@ -179,10 +179,10 @@ impl Games {
         self.slots.iter_mut().for_each(|slot| slot.game.end_watch());
     }
 
-    /// Starts the threads again in a child process, which inherits none, and removes the watches.
+    /// Restarts the threads in a child process, which inherits none, and removes the watches.
     pub fn continue_after_fork(&mut self) {
         self.starts.end_watches();
-        // Neither may be dropped: they would wait for threads of the parent process.
+        // Drop neither: dropping them would wait for threads of the parent process.
         self.slots
             .iter_mut()
             .for_each(|slot| slot.game.forget_watch());
@@ -215,7 +215,7 @@ impl Games {
         self.slots[game].game.standing()
     }
 
-    /// Writes the rows of games that have begun since the last write. Other rows stay unchanged.
+    /// Writes the rows of games that have begun since the last write. Other rows remain unchanged.
     ///
     /// # Panics
     /// If a slice does not have one entry per row.
@@ -259,7 +259,7 @@ impl Games {
         begun.into_iter().collect()
     }
 
-    /// Restarts one game with this seed, or with its next one. Later seeds continue from there, in
+    /// Restarts one game with this seed, or with its next seed. Later seeds continue from there in
     /// steps of the number of games. [`Games::show`] writes its rows.
     ///
     /// # Errors
@@ -277,8 +277,8 @@ impl Games {
         slot.begin(&self.setup, &self.starts).map(drop)
     }
 
-    /// Plays one step of every game with one action per row. A game that ends `restarts` in the
-    /// same step; otherwise in the next one, whose action and reward do not count.
+    /// Plays one step of every game with one action per row. A game that ends restarts in the same
+    /// step if `restarts`; otherwise in the next step, whose action and reward do not count.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a new game cannot begin.

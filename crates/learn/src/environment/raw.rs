@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// The observation space before the team sizes are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RawObservation {
-    /// An observation space that does not depend on them.
+    /// An observation space that does not depend on the team sizes.
     Space(ObservationSpace),
     /// [`ObservationSpace::Squall`] with one slot for each boat of the game.
     Squall {
@@ -26,30 +26,31 @@ pub enum RawObservation {
 pub struct RawSetup {
     /// The game file.
     pub game: PathBuf,
-    /// The sea file. None: the game's.
+    /// The sea file. `None` means the game's.
     pub sea: Option<PathBuf>,
     /// The policies' observations.
     pub observation: RawObservation,
     /// The policies' actions.
     pub action: ActionSpace,
-    /// The strategy file whose helms apply the actions. None: actions are orders.
+    /// The strategy file whose helms apply the actions. `None`: actions are orders.
     pub helm: Option<PathBuf>,
-    /// How long an action holds, s: a multiple of the game's `decision_s`. None: the smallest one
-    /// from `decision_min_s` on.
+    /// How long an action holds, s; a multiple of the game's `decision_s`. `None` means the
+    /// smallest multiple not below `decision_min_s`.
     pub decision_s: Option<f64>,
-    /// How long an action holds at least, s, if `decision_s` is None.
+    /// Minimum time for which an action holds if `decision_s` is `None`, s.
     pub decision_min_s: f64,
     /// The maximum length of an episode, s.
     pub episode_max_s: Option<f64>,
     /// The number of repeating starts; see [`Setup::starts`].
     pub starts: Option<u32>,
-    /// The learning team's name. None: alternating.
+    /// The learning team's name. `None`: teams alternate.
     pub team: Option<String>,
-    /// The strategy file for all but one boat of a policy's team. None: policies control all boats.
+    /// The strategy file for all but one boat of a policy's team. `None`: policies control all
+    /// boats.
     pub mates: Option<PathBuf>,
-    /// The opponents' weights and strategy files. Without a file, the policy plays itself.
+    /// The opponents' weights and strategy files. Without a file, the policy plays against itself.
     pub opponents: Vec<(f64, Option<PathBuf>)>,
-    /// The rewards file. None: all rewards are 0.
+    /// The rewards file. `None`: all rewards are 0.
     pub rewards: Option<PathBuf>,
     /// Value of a reward one step later, 0 to 1.
     pub discount: f64,
@@ -61,7 +62,7 @@ impl RawSetup {
     /// Reads the files and checks the values.
     ///
     /// # Errors
-    /// [`SetupError`]: the first invalid field, or all faults of a file.
+    /// [`SetupError`]: the first invalid field, or all faults in a file.
     pub fn check(&self) -> Result<Setup, SetupError> {
         let overrides = Overrides {
             sea: self.sea.clone(),

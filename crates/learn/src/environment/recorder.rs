@@ -48,8 +48,8 @@ impl RecordingLog {
 /// How recordings are named, and whether abandoned games are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingNames {
-    /// By time, game and seed, so that no file is replaced. Keeps the played part of an abandoned
-    /// game, without a result.
+    /// By time, game and seed, so that no file is replaced. Keeps the part of an abandoned game
+    /// that was played, without a result.
     ByTime,
     /// By the game's seed and number; see [`recording_name`]. Replaces existing files and discards
     /// abandoned games.
@@ -145,8 +145,7 @@ impl RecordedGame {
                     Arc::new(contest.frame(&mut self.shown)),
                 )
             }
-            // Each decision is recorded as it is played: one step may end a game and begin the
-            // next.
+            // Record each decision as it is played: one step may end a game and begin the next.
             (Stage::Start(mut start, first), Moment::Decision) => {
                 match self.recordings.begin(start.scenario(), self.number) {
                     Ok((mut recorder, path)) => {

@@ -26,8 +26,8 @@ pub enum Control {
 pub struct Teacher {
     /// The strategy.
     pub strategy: Box<Strategy>,
-    /// With [`ActionSpace::Options`]: the option of each mode, by the mode's path. Other modes
-    /// teach nothing.
+    /// With [`ActionSpace::Options`]: the option for each mode, by the mode's path. Nothing is
+    /// learned from other modes.
     pub options: BTreeMap<String, usize>,
 }
 
@@ -38,7 +38,7 @@ pub enum Player {
     Policy,
     /// The helms of a strategy.
     Strategy(Box<Strategy>),
-    /// A fixed policy with the same control as the learning one.
+    /// A fixed policy with the same control as the learning policy.
     Model(Box<PolicyModel>),
 }
 
@@ -51,20 +51,20 @@ pub struct Setup {
     pub spaces: Spaces,
     /// How actions reach the boats.
     pub control: Control,
-    /// Plays the policy's boats in its place. None: the policy plays.
+    /// Plays the policy's boats in its place. `None`: the policy plays.
     pub teacher: Option<Teacher>,
     /// A critic's input.
     pub critic: CriticInput,
     /// Game decisions per policy step, at least one.
     pub decisions_per_step: u32,
-    /// Maximum number of steps of an episode. None: until the game is over.
+    /// Maximum number of steps of an episode. `None`: until the game is over.
     pub steps_max: Option<u32>,
-    /// The number of different starts, which repeat. The slowest part of a new game, its sea and
-    /// its boats, is created once per start. None: every game has a new start.
+    /// The number of different starts, which repeat. The slowest part of a new game, creating sea
+    /// and boats, is done once per start. `None`: every game has a new start.
     pub starts: Option<u32>,
-    /// The learning team. None: alternates with the seed.
+    /// The learning team. `None`: alternates with the seed.
     pub learner: Option<TeamId>,
-    /// The strategy of all but one boat of a policy's team; that boat alternates. None: policies
+    /// The strategy of all but one boat of a policy's team; that boat alternates. `None`: policies
     /// control all boats.
     pub mates: Option<Box<Strategy>>,
     /// The enemies and their draw weights.
@@ -75,7 +75,7 @@ pub struct Setup {
     pub discount: f64,
 }
 
-/// Why a setup cannot be played.
+/// A reason why a setup cannot be played.
 #[derive(Debug, Error)]
 pub enum SetupError {
     /// The game does not have two teams.
@@ -86,7 +86,7 @@ pub enum SetupError {
         "the teams have {0} and {1} boats, expected teams of equal size, because policies play both sides"
     )]
     Uneven(usize, usize),
-    /// No opponent can be drawn.
+    /// No opponent has a positive weight.
     #[error("no opponent can be drawn, expected at least one with a weight above 0")]
     NoOpponent,
     /// A role without a suitable policy behaviour.
@@ -96,7 +96,7 @@ pub enum SetupError {
     NoPolicy {
         /// The role.
         role: String,
-        /// The kind of policy behaviour needed.
+        /// The required kind of policy behaviour.
         expected: &'static str,
     },
     /// A seed outside the repeating starts.
@@ -201,7 +201,7 @@ impl Setup {
         Ok(())
     }
 
-    /// The options that a policy chooses from. None in other action spaces.
+    /// The options from which a policy chooses. `None` in other action spaces.
     pub fn options(&self) -> Option<&[String]> {
         match &self.control {
             Control::Helm(strategy) if self.spaces.action == ActionSpace::Options => {
@@ -212,7 +212,7 @@ impl Setup {
         }
     }
 
-    /// The number of discrete actions. None if actions are continuous.
+    /// The number of discrete actions. `None` if actions are continuous.
     pub fn actions(&self) -> Option<usize> {
         self.options()
             .map(<[String]>::len)
@@ -235,7 +235,7 @@ impl Setup {
 
     /// The boats of a team that a policy controls in the game with this seed.
     pub fn pilots_of(&self, team: TeamId, seed: u64) -> impl Iterator<Item = VehicleId> {
-        // Sides alternate with every seed, boats with every second one.
+        // Sides alternate with every seed, boats with every second seed.
         let one = self
             .mates
             .is_some()

@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 impl Setup {
-    /// The setup of a stage. Its opponents are the policy itself, if the stage has self-play, and
-    /// then the stage's strategies. Only the first has a draw weight yet.
+    /// The setup of a stage. Its opponents are the policy itself, if the stage has self-play, then
+    /// the stage's strategies. Only the first opponent has a draw weight yet.
     ///
     /// # Errors
     /// [`SetupError`]: the faults of a file, or why the setup cannot be played.

@@ -24,7 +24,7 @@ impl Starts {
         }
     }
 
-    /// Copies the starts with another first seed.
+    /// Copies the starts with a different first seed.
     pub(super) fn from(&self, setup: &Setup, seed: u64) -> Starts {
         Starts::new(setup, seed, self.watches.clone())
     }
@@ -33,12 +33,12 @@ impl Starts {
         self.watches = None;
     }
 
-    /// The game with this seed. `number` decides whether it is watched.
+    /// The game with this seed. `number` determines whether it is watched.
     pub(super) fn game(&self, setup: &Setup, number: u64, seed: u64) -> Result<Game, SetupError> {
         let watch = self.watches.as_ref().and_then(|watches| watches(number));
         // Repeating starts must outnumber the parallel games: with 64 of each, every game always
         // had the same start, and the policy learned nothing. A repeated start takes 0.03 ms; a new
-        // one with a sea takes 0.41 ms.
+        // start with a sea takes 0.41 ms.
         let index = seed
             .wrapping_sub(self.seed)
             .checked_rem(self.made.len() as u64);

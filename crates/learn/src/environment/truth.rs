@@ -1,9 +1,9 @@
-//! The truth about a game as input for a critic: values beyond the sensors of any boat, in the same
-//! frame for both teams.
+//! The true state of a game as input for a critic: values beyond the sensors of any boat, in the
+//! same frame for both teams.
 //!
 //! Positions and directions are relative to the centre of the field: ahead, as the boat's team
 //! faces the enemies' end, and to port. Speeds are in units of 3 m/s, wind in units of 10 m/s.
-//! Booleans are 0 or 1. The boat itself comes first, then its mates, then its enemies, each in
+//! Booleans are 0 or 1. The boat itself comes first, then its teammates, then its enemies, each in
 //! scenario order.
 
 use messages::{Picture, VehicleTruth};
@@ -61,11 +61,11 @@ pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
 
 /// Appends the values of each boat.
 pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) {
-    // A default cursor: past events do not matter here.
+    // A default cursor, since past events do not matter.
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
-    // Used only in training. It leaves only the boats' future decisions unknown to the critic. It
-    // is stored beside the observation, and no policy ever receives it.
+    // Used only in training. Only the boats' future decisions remain unknown to the critic. It is
+    // stored next to the observation, and no policy ever receives it.
     let frame = contest.frame(&mut cursor);
     let scenario = contest.scenario();
     let field = &scenario.field;

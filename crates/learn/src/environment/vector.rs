@@ -140,7 +140,7 @@ impl VectorEnvironment {
         Ok(())
     }
 
-    /// Joins the observations with the truth.
+    /// Joins the observations with the true state.
     fn note_states(&mut self) {
         let truth = self.setup().truth_size();
         if truth == 0 {

@@ -9,9 +9,9 @@ pub struct AdamSettings {
     pub beta_1: f32,
     /// Decay rate of the squared gradients' mean.
     pub beta_2: f32,
-    /// Added to the square root of the latter mean.
+    /// Term added to the square root of the mean squared gradient.
     pub epsilon: f32,
-    /// Maximum norm; longer gradients are scaled down to it. None: unlimited.
+    /// Maximum norm; longer gradients are scaled down to it. `None` means unlimited.
     pub norm_max: Option<f32>,
 }
 
@@ -30,14 +30,14 @@ impl Default for AdamSettings {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adam {
     settings: AdamSettings,
-    /// The powers of both decays.
+    /// The powers of the two decay rates.
     powers: (f32, f32),
     mean: Vec<f32>,
     square: Vec<f32>,
 }
 
 impl Adam {
-    /// An optimiser for this number of parameters.
+    /// An optimiser for the given number of parameters.
     pub fn new(parameters: usize, settings: AdamSettings) -> Adam {
         Adam {
             settings,

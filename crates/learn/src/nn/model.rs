@@ -35,7 +35,7 @@ impl Perceptron {
         let inputs = self.sizes()[i];
         let outputs = self.sizes()[i + 1];
         let (weights, biases) = self.layer(i);
-        // Weights are grouped by input here, but by output in ONNX files.
+        // Weights are grouped by input in this network, but by output in ONNX files.
         let turned =
             (0..outputs).flat_map(|to| (0..inputs).map(move |from| weights[from * outputs + to]));
         Layer {

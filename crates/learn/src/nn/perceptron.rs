@@ -14,7 +14,7 @@ pub struct Perceptron {
     parameters: Vec<f32>,
 }
 
-/// Data of the forward pass that the backward pass needs: the rows of every layer, the input first.
+/// Data of the forward pass that the backward pass needs: the rows of every layer, input first.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     layers: Vec<Vec<f32>>,
@@ -67,7 +67,7 @@ impl Perceptron {
         network
     }
 
-    /// Row size of each layer, the input first.
+    /// Row size of each layer, input first.
     pub fn sizes(&self) -> &[usize] {
         &self.sizes
     }
@@ -110,8 +110,8 @@ impl Perceptron {
         })
     }
 
-    /// Computes the output for every row of `input`, rows × values. Keeps the backward pass's data
-    /// in `trace`, reusing its memory.
+    /// Computes the output for every row of `input`, rows × values. Keeps the data for the backward
+    /// pass in `trace`, reusing its memory.
     pub fn forward(&self, input: &[f32], trace: &mut Trace) {
         let rows = input.len() / self.sizes[0];
         debug_assert_eq!(input.len(), rows * self.sizes[0]);
@@ -152,7 +152,7 @@ impl Perceptron {
 
     /// Adds the gradient of a loss with respect to all parameters to `gradient`, given its gradient
     /// with respect to the outputs, rows × values, which is overwritten. Returns the gradient with
-    /// respect to the inputs on request.
+    /// respect to the inputs if requested.
     pub fn backward(
         &self,
         trace: &Trace,

@@ -1,5 +1,5 @@
 //! Double DQN (van Hasselt, Guez and Silver, AAAI 2016): a network estimates the value of each
-//! discrete action, and a target network evaluates the action that the current one would choose
+//! discrete action, and a target network evaluates the action that the current network would choose
 //! next.
 
 use super::{Minibatch, Replay, Slope};
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// A network with its target and its optimiser: the learning state without the replay buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DqnLearner {
-    /// From an observation to the value of the rest of the episode after each action, in scaled
+    /// Maps an observation to the value of the rest of the episode after each action, in scaled
     /// rewards.
     pub network: Perceptron,
     /// The target network.
@@ -27,7 +27,7 @@ impl DqnLearner {
     /// A new network of this shape.
     pub fn new(observation: usize, hidden: &[usize], actions: usize, seed: u64) -> DqnLearner {
         let sizes = [&[observation], hidden, &[actions]].concat();
-        // Hyperbolic tangents, unlike in the paper: boats can evaluate only such networks.
+        // Hyperbolic tangents, unlike in the paper, because boats can evaluate only such networks.
         let network = Perceptron::new(&sizes, 0.01, &mut Stream::new(seed, "actor"));
         let settings = AdamSettings {
             epsilon: 1e-8,
@@ -124,7 +124,7 @@ impl DqnLearner {
     }
 }
 
-/// The Huber loss: half the square up to 1, and linear beyond.
+/// The Huber loss: half the square up to 1, linear beyond.
 fn huber(off: f32) -> f32 {
     let size = off.abs();
     if size <= 1.0 {
@@ -134,7 +134,7 @@ fn huber(off: f32) -> f32 {
     }
 }
 
-/// The most valuable action or, with probability `epsilon`, a random one.
+/// The most valuable action or, with probability `epsilon`, a random action.
 pub fn explored(values: &[f32], epsilon: f32, stream: &mut Stream) -> usize {
     if stream.unit() < f64::from(epsilon) {
         stream.below(values.len() as u64) as usize

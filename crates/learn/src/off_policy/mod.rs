@@ -1,5 +1,5 @@
-//! Off-policy algorithms: the policy learns from transitions in a replay buffer that any policy may
-//! have produced.
+//! Off-policy algorithms: the policy learns from transitions in a replay buffer, which may come
+//! from any policy.
 //!
 //! As in PPO, rows are processed in shards of a fixed size. Gradients are summed in order, so that
 //! training gives the same bits on any number of threads.

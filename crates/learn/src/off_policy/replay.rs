@@ -12,12 +12,12 @@ pub struct Transition<'a, A> {
     pub action: A,
     /// The reward.
     pub reward: f32,
-    /// The observation after the step, still of the same episode.
+    /// The observation after the step, still in the same episode.
     pub next_observation: &'a [f32],
-    /// Whether the step ended the game, so that no further reward follows.
+    /// Whether the step ended the game, so that no rewards follow.
     pub over: bool,
-    /// Whether the boat followed the action. Otherwise only values are learned from the transition:
-    /// a tagged boat is steered home.
+    /// Whether the boat followed the action. If not, only values are learned from the transition: a
+    /// tagged boat is steered home.
     pub counts: bool,
 }
 
@@ -63,7 +63,7 @@ impl<A: Copy + Default> Replay<A> {
     /// If either is 0.
     pub fn new(size: usize, capacity: usize) -> Replay<A> {
         // The buffer is part of a training run's saved state, about 100 MB by default. Refilling it
-        // by playing would need the games' earlier state.
+        // by playing would require the earlier state of the games.
         assert!(size > 0 && capacity > 0, "{size}, {capacity}");
         Replay {
             size,
@@ -83,7 +83,7 @@ impl<A: Copy + Default> Replay<A> {
         *self = Replay::new(self.size, self.capacity);
     }
 
-    /// Stores a transition; replaces the oldest one in a full buffer.
+    /// Stores a transition, replacing the oldest in a full buffer.
     ///
     /// # Panics
     /// If an observation has the wrong size.

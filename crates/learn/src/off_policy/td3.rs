@@ -19,12 +19,11 @@ pub type Numbers = [f32; NUMBERS];
 /// replay buffer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Td3Learner {
-    /// From an observation to numbers whose hyperbolic tangents are the action.
+    /// Maps an observation to numbers whose hyperbolic tangents are the action.
     pub actor: Perceptron,
-    /// From an observation and an action to the value of the rest of the episode, in scaled
-    /// rewards.
+    /// Map an observation and an action to the value of the rest of the episode, in scaled rewards.
     pub critics: [Perceptron; 2],
-    /// The target policy, which follows the policy slowly.
+    /// The target policy, which slowly follows the policy.
     pub target_actor: Perceptron,
     /// The target critics.
     pub target_critics: [Perceptron; 2],
@@ -39,7 +38,7 @@ pub struct Td3Learner {
 pub struct Td3Losses {
     /// Half the mean squared error, averaged over both critics.
     pub critic: f32,
-    /// The negative mean value of the policy's actions according to the first critic. None if the
+    /// The negative mean value of the policy's actions according to the first critic. `None` if the
     /// step did not update the policy.
     pub actor: Option<f32>,
 }
@@ -138,8 +137,8 @@ impl Td3Learner {
         }
     }
 
-    /// The target value of each step: its reward plus the smaller of the target critics' values for
-    /// a noisy action of the target policy.
+    /// The target value of each step: its reward plus the smaller of the two target critics' values
+    /// for a noisy action of the target policy.
     fn targets(
         &self,
         minibatch: &Minibatch<Numbers>,
@@ -214,8 +213,8 @@ impl Td3Learner {
     }
 
     /// The negative mean value of the policy's actions according to the first critic, over
-    /// transitions whose action the boat followed, and its gradient with respect to the policy's
-    /// parameters.
+    /// transitions in which the boat followed its action, and its gradient with respect to the
+    /// policy's parameters.
     pub fn actor_gradient(&self, minibatch: &Minibatch<Numbers>) -> (Vec<f32>, f32) {
         let critic = &self.critics[0];
         let size = self.actor.sizes()[0];
@@ -291,7 +290,7 @@ fn with_actions(observations: &[f32], actions: &[Numbers], size: usize) -> Vec<f
     rows
 }
 
-/// Moves a network's parameters towards another's by this fraction.
+/// Moves a network's parameters towards those of another network by the given fraction.
 fn approach(target: &mut Perceptron, network: &Perceptron, share: f32) {
     let numbers = target.parameters_mut().iter_mut().zip(network.parameters());
     numbers.for_each(|(target, number)| *target += share * (number - *target));

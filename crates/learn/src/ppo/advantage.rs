@@ -14,13 +14,13 @@ pub struct Steps {
     pub next_values: Vec<f32>,
     /// Whether the step ended the game, so that the expected value is 0.
     pub over: Vec<bool>,
-    /// Whether the step ended the episode, so that the next step belongs to another one.
+    /// Whether the step ended the episode, so that the next step belongs to a new one.
     pub ended: Vec<bool>,
 }
 
 impl Steps {
-    /// The advantage of every step, steps × rows. Added to `values`, they give the returns to
-    /// learn.
+    /// The advantage of every step, steps × rows. The sums of advantages and `values` are the
+    /// returns to learn.
     pub fn advantages(&self, discount: f32, lambda: f32) -> Vec<f32> {
         let Steps {
             rows,
@@ -55,8 +55,8 @@ mod tests {
 
     #[test]
     fn they_are_the_weighted_sums_of_all_later_surprises() {
-        // Two rows of six steps; in the first the game is over after the third, the second is cut
-        // off after the fourth.
+        // Two rows of six steps: in the first, the game is over after the third step; the second is
+        // cut off after the fourth.
         let rows = 2;
         let count = 6;
         let number = |i: usize| (0.37 * i as f32).fract() - 0.4;

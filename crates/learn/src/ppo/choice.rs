@@ -1,4 +1,4 @@
-//! Choice among discrete actions by their logits.
+//! The choice among discrete actions by their logits.
 
 /// Computes the log probabilities of actions.
 pub fn log_probabilities(logits: &[f32], out: &mut [f32]) {

@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 /// A policy and its critic with their optimisers: the whole learning state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActorCritic {
-    /// From an observation to the logit of each action.
+    /// Maps an observation to the logit of each action.
     pub actor: Perceptron,
-    /// From a state, or the observation, to the value of the rest of the episode, in units of
+    /// Maps a state, or the observation, to the value of the rest of the episode, in units of
     /// [`ActorCritic::scale`].
     pub critic: Perceptron,
     /// The unit of values: the standard deviation of returns.
@@ -36,7 +36,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The standard deviation; 1 without returns so far.
+    /// The standard deviation; 1 before any returns.
     pub fn deviation(&self) -> f32 {
         if self.count < 2.0 {
             1.0
@@ -45,7 +45,7 @@ impl Scale {
         }
     }
 
-    /// Adds returns. Older ones count less.
+    /// Adds returns. Older returns count less.
     fn see(&mut self, returns: &[f32]) {
         const MEMORY: f64 = 1e6;
         let forget = (MEMORY / (self.count + returns.len() as f64)).min(1.0);
@@ -76,8 +76,8 @@ pub struct Batch {
     pub returns: Vec<f32>,
     /// The learning objective.
     pub lesson: Lesson,
-    /// Whether the boat followed the action. Only the critic learns from other samples: it must
-    /// know the value of being tagged.
+    /// Whether the boat followed the action. From other samples only the critic learns, because it
+    /// must know the value of being tagged.
     pub counts: Vec<bool>,
 }
 
@@ -253,9 +253,9 @@ impl ActorCritic {
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
             // A tagged boat's actions have no effect; policies that learned from them left the
-            // field. The critic does learn from these samples: before it did, it misjudged being
-            // tagged, and policies that won 16 of 20 games against Pav01 won none after another
-            // half a million samples.
+            // field. The critic does learn from these samples: before that, it misjudged being
+            // tagged, and policies that won 16 of 20 games against Pav01 won none after half a
+            // million more samples.
             if !batch.counts[i] {
                 continue;
             }
@@ -372,7 +372,7 @@ fn policy_gradient(
     let free = ratio * advantage;
     let held = limited * advantage;
     let entropy = -logs.iter().map(|log| libm::expf(*log) * log).sum::<f32>();
-    // Where the clipped term is smaller, the gradient is zero.
+    // If the clipped term is smaller, the gradient is zero.
     let by_log = if free <= held {
         -ratio * advantage
     } else {
@@ -443,7 +443,7 @@ mod tests {
     #[test]
     fn a_critic_explains_all_nothing_or_less_than_nothing() {
         let returns = [1.0, 2.0, 4.0, 5.0];
-        // Values equal to the returns, constant, and opposite to them.
+        // Values equal to the returns, constant, and opposite to the returns.
         for (values, want) in [
             (returns, 1.0),
             ([3.0; 4], 0.0),
@@ -473,7 +473,7 @@ mod tests {
         let logits = [0.3_f64, -1.1, 0.8, 0.1, -0.4];
         let mut logs = [0.0; 5];
         log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
-        // Within the limits; beyond them with more to gain; and beyond them where the policy must
+        // Within the limits; beyond them with more to gain; and beyond them, when the policy must
         // return.
         for (change, advantage) in [
             (0.05, 1.3),

@@ -75,7 +75,7 @@ pub struct Worth {
     /// The boat leaves the field.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub left_field: f64,
-    /// The boat comes within the collision distance of another.
+    /// The boat comes within the collision distance of another boat.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub collided: f64,
 }
@@ -91,8 +91,8 @@ pub struct End {
     pub point: f64,
 }
 
-/// Discounted gain of a potential that depends only on the state, and is 0 at the end of a game
-/// (Ng, Harada and Russell, ICML 1999). It does not change the optimal policy.
+/// Discounted gain of a potential that depends only on the state and is 0 at the end of a game (Ng,
+/// Harada and Russell, ICML 1999). It does not change the optimal policy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Potential {
     /// At the enemies' flag; 0 a field's width away. For a carrier, it rises to twice this at the
@@ -119,21 +119,21 @@ pub struct Place {
     /// without intruders.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub intruder: f64,
-    /// An eighth of the field's width from one's own flag towards its nearest untagged enemy, or at
+    /// An eighth of the field's width from the own flag towards its nearest untagged enemy, or at
     /// that enemy if nearer; 0 a quarter of the width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub guard: f64,
-    /// As `guard`, for an untagged mate on the enemies' side instead of the flag: the one nearest
-    /// to an untagged enemy.
+    /// As `guard`, for an untagged teammate on the enemies' side instead of the flag: the one
+    /// nearest to an untagged enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub shield: f64,
-    /// At least a quarter of the field's width from every untagged enemy; 0 at one.
+    /// At least a quarter of the field's width from every untagged enemy; 0 at an enemy.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub clear: f64,
 }
 
 impl Place {
-    /// The value of a boat's place.
+    /// The value of a boat's position.
     pub fn of(&self, boat: &BoatProgress) -> f64 {
         if boat.tagged {
             return 0.0;
@@ -182,7 +182,8 @@ impl Rewards {
             .any(|worth| *worth != 0.0)
     }
 
-    /// Adds the rewards for events. `carrying` states whether each boat carried a flag before them.
+    /// Adds the rewards for events. `carrying` states whether each boat carried a flag before the
+    /// events.
     pub fn add_events(
         &self,
         scenario: &Scenario,

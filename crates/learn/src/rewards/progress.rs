@@ -1,4 +1,4 @@
-//! The progress of a boat and its position among the others: the input to potentials and places.
+//! A boat's progress and its position among the other boats: the input to potentials and places.
 
 use primitives::frame::Ned;
 use primitives::id::TeamId;
@@ -7,10 +7,11 @@ use sim::Contest;
 
 /// Distance within which a guard position has value, as a fraction of the field's width.
 const REACH: f64 = 0.25;
-/// A guard's distance from the flag or mate, towards the enemy, as a fraction of the field's width.
+/// A guard's distance from the flag or teammate towards the enemy, as a fraction of the field's
+/// width.
 const STAND_OFF: f64 = 0.125;
 
-/// A boat on the field, of one of two teams.
+/// A boat on the field, in one of two teams.
 #[derive(Clone, Copy)]
 struct Placed {
     at: Ned,
@@ -19,31 +20,31 @@ struct Placed {
     carrying: bool,
 }
 
-/// A boat's progress and its position among the others.
+/// A boat's progress and its position among the other boats.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoatProgress {
-    /// Whether it is tagged.
+    /// Whether the boat is tagged.
     pub tagged: bool,
-    /// Whether it carries a flag.
+    /// Whether the boat carries a flag.
     pub carrying: bool,
     /// Distance from the nearest enemy flag, in field widths.
     pub from_flag: f64,
-    /// Distance from its team's nearest flag, in field widths. Under most rules flags are
-    /// brought there and tagged boats are untagged there.
+    /// Distance from its team's nearest flag, in field widths. Under most rules, this is where
+    /// flags are brought and tagged boats are untagged.
     pub from_home: f64,
-    /// Its position among the others, if requested.
+    /// The boat's position among the other boats, if requested.
     pub among: Among,
 }
 
-/// A boat's position among the others, each value from 0 to 1.
+/// A boat's position among the other boats, each value from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Among {
     /// Proximity to the nearest intruder, an untagged enemy on the boat's side: 1 at its position,
-    /// 0 at a field width or more, or without an intruder.
+    /// 0 at a distance of a field width or more, or without intruders.
     pub at_intruder: f64,
-    /// Proximity to the place that guards its own flag; see [`Place::guard`](super::Place::guard).
+    /// Proximity to the place that guards the own flag; see [`Place::guard`](super::Place::guard).
     pub on_guard: f64,
-    /// Proximity to the place that shields a mate; see [`Place::shield`](super::Place::shield).
+    /// Proximity to the place that shields a teammate; see [`Place::shield`](super::Place::shield).
     pub at_shield: f64,
     /// Distance from the nearest untagged enemy: 0 at its position, 1 at a quarter of the field's
     /// width and beyond.
@@ -51,7 +52,7 @@ pub struct Among {
 }
 
 /// Each boat's progress according to its own sensors and, with `among_others`, its position among
-/// the others.
+/// the other boats.
 pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
     let scenario = contest.scenario();
     let placed = |team: TeamId| Placed {
@@ -108,10 +109,10 @@ fn of_boats(field: &Field, boats: &[Placed], among_others: bool) -> Vec<BoatProg
     boats.iter().enumerate().map(progress).collect()
 }
 
-/// The places from which flags and mates are protected.
+/// The places from which flags and teammates are protected.
 struct Posts {
-    /// By team, the place that guards its flag; of several flags, the one nearest to an untagged
-    /// enemy. None without untagged enemies.
+    /// By team, the place that guards its flag; of several flags, that nearest to an untagged
+    /// enemy. `None` without untagged enemies.
     flag: [Option<Ned>; 2],
     /// Untagged boats on the enemies' side: index, distance to the nearest untagged enemy in
     /// metres, and the place that shields the boat from that enemy.
@@ -225,7 +226,8 @@ mod tests {
         })
     }
 
-    /// Boats at (m along, m across), each tagged or not; the first two belong to the first team.
+    /// Boats at (m along, m across), with whether each is tagged; the first two belong to the first
+    /// team.
     fn seen(boats: [(f64, f64, bool); 4]) -> Vec<BoatProgress> {
         let field = field();
         let boats: Vec<Placed> = boats
@@ -266,7 +268,7 @@ mod tests {
     #[test]
     fn the_nearest_untagged_enemy_on_a_teams_own_side_is_an_intruder() {
         // One of the two enemies on the first team's side is tagged. The other is 32 m and 40 m
-        // from the boats.
+        // away from the boats.
         let boats = seen([
             (70.0, 72.0, false),
             (30.0, 40.0, false),
@@ -318,8 +320,8 @@ mod tests {
         };
         // 20 m from (100, 40) towards (150, 40) is (120, 40), 10 m from the boat at (110, 40).
         close(shield((100.0, 40.0, false))[0].among.at_shield, 0.75);
-        // A boat does not shield itself. The other mate's only target is the boat at (110, 40), so
-        // its place is (130, 40).
+        // A boat does not shield itself. Its teammate can shield only the boat at (110, 40), from
+        // (130, 40).
         close(shield((100.0, 40.0, false))[1].among.at_shield, 0.25);
         for at_home_or_tagged in [(70.0, 40.0, false), (100.0, 40.0, true)] {
             close(shield(at_home_or_tagged)[0].among.at_shield, 0.0);

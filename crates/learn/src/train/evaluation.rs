@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 pub struct Played {
     /// The numbers of games won, drawn and lost.
     pub results: [u32; 3],
-    /// Mean points per game, first the policy's.
+    /// Mean points per game, the policy's first.
     pub points: [f64; 2],
-    /// Mean number of field exits by the policy's boats per game.
+    /// Mean number of times per game that a boat of the policy left the field.
     pub left_field: f64,
 }
 
@@ -40,7 +40,7 @@ impl Played {
     }
 }
 
-/// Plays one game per seed with a policy's most likely actions, or its continuous ones.
+/// Plays one game per seed with a policy's most likely actions, or its continuous actions.
 ///
 /// # Errors
 /// [`SetupError`] if the setup cannot be played.
@@ -59,7 +59,7 @@ pub fn evaluate(
     while ended.iter().any(Option::is_none) {
         let observations = environment.observations();
         let logits = pool.install(|| outputs(actor, observations));
-        // Greedy rather than sampled, as on board a boat.
+        // Greedy rather than sampled, as on a boat.
         let chosen = logits
             .chunks_exact(logits.len() / rows)
             .map(|output| greedy(is_discrete, output));

@@ -1,4 +1,4 @@
-//! The league: a learning policy's opponents, drawn by how often they win.
+//! The league: a learning policy's opponents, drawn according to how often they win.
 
 use crate::environment::Finished;
 use crate::training::{self, Stage};
@@ -14,7 +14,7 @@ const MEMORY: f64 = 0.98;
 /// A past version of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PastSelf {
-    /// Samples learned by then.
+    /// Samples learned by that time.
     pub(super) samples: u64,
     onnx: Vec<u8>,
 }
@@ -59,7 +59,7 @@ impl League {
         &self.past
     }
 
-    /// Stores a past policy, up to `most` of them, and returns it as an opponent.
+    /// Stores a past policy, keeping at most `most` of them, and returns it as an opponent.
     pub(super) fn keep(&mut self, samples: u64, onnx: Vec<u8>, most: usize) -> Option<PolicyModel> {
         self.past.push(PastSelf { samples, onnx });
         self.kept += 1;
@@ -100,7 +100,7 @@ impl League {
             (past.clone(), stage.past_selves),
         ] {
             // Prioritised fictitious self-play (Vinyals and others, Nature 2019). Past policies
-            // play from their ONNX files, as boats do.
+            // play from their ONNX files, as on boats.
             let urgencies: Vec<f64> = self.records[range.clone()]
                 .iter()
                 .map(|r| r.urgency(league.priority))
@@ -112,7 +112,7 @@ impl League {
             });
         }
         if plays_itself {
-            // Without past policies, the current one takes their weight.
+            // Without past policies, the current policy takes over their weight.
             weights[0] = stage.self_play
                 + if past.is_empty() {
                     stage.past_selves
@@ -125,7 +125,7 @@ impl League {
 }
 
 impl Record {
-    /// How much can be learned from an opponent, given its fraction of wins.
+    /// How much can be learned from an opponent, estimated from its fraction of wins.
     fn urgency(self, priority: f64) -> f64 {
         // The prior is one win in two games.
         let lost = (self.lost + 1.0) / (self.games + 2.0);

@@ -86,7 +86,7 @@ impl Learner {
 }
 
 /// Converts a policy's output to an action without exploration: the most likely or most valuable
-/// discrete action, or the continuous one.
+/// discrete action, or the continuous action.
 pub(super) fn greedy(is_discrete: bool, output: &[f32]) -> Action {
     if is_discrete {
         Action::likeliest(output)

@@ -29,28 +29,28 @@ use std::sync::Arc;
 
 /// Metadata keys for a model's origin.
 const SAMPLES: &str = "squall.samples";
-/// First seed of evaluation games, beyond any training seed.
+/// First seed of evaluation games, higher than any training seed.
 const EVALUATION_SEED: u64 = 1 << 62;
 /// Seed spacing between a training run's environments, as a power of two.
 const SEEDS_BITS: u32 = 24;
-/// All games restart after this many times their length, so that the training can be resumed there.
+/// All games restart after this many times their length, so that training can resume there.
 const LENGTHS: i64 = 4;
 
 /// A training run in progress.
 pub struct Trainer {
     training: Training,
     setups: Vec<Setup>,
-    /// The setup against each opponent of the evaluation, with its file's stem.
+    /// The setup against each opponent of the evaluation, with the stem of the opponent's file.
     judges: Vec<(String, Setup)>,
     threads: usize,
     pool: rayon::ThreadPool,
     environment: VectorEnvironment,
-    /// Watches of episodes by their number.
+    /// Watches of episodes, by episode number.
     watches: Option<Watches>,
     /// By stage: updates between restarts of all games.
     updates_per_epoch: Vec<u64>,
     state: State,
-    /// Whether the games are still at their last restart, and the state after it.
+    /// Whether the games are still at their last restart although the state is later.
     is_behind: bool,
 }
 
@@ -67,11 +67,12 @@ pub struct Progress {
     pub reward: f32,
     /// The episodes that ended, each with its opponent's name; numbered as in [`Trainer::watch`].
     pub finished: Vec<(Finished, String)>,
-    /// The evaluation of the current policy if one was due.
+    /// The evaluation of the current policy, if one was due.
     pub evaluated: Option<Evaluated>,
     /// Whether the current policy is the best so far.
     pub is_best: bool,
-    /// Whether all games restart: the smallest state, from which a training run resumes at once.
+    /// Whether all games restart: then the state is smallest, and a training run resumes from it at
+    /// once.
     pub games_restart: bool,
 }
 
@@ -95,12 +96,12 @@ impl Trainer {
         Trainer::with(training, threads, None)
     }
 
-    /// Resumes a training run from [`Trainer::state`]. The results are those without an
+    /// Resumes a training run from [`Trainer::state`]. The results are the same as without an
     /// interruption.
     ///
     /// # Errors
-    /// [`StateError`] if the state belongs to another training run or version, or a file cannot be
-    /// used.
+    /// [`StateError`] if the state belongs to a different training run or version, or a file cannot
+    /// be used.
     pub fn resume(training: Training, threads: usize, state: &[u8]) -> Result<Trainer, StateError> {
         let state = State::read(state, &training)?;
         Ok(Trainer::with(training, threads, Some(state))?)
@@ -169,9 +170,9 @@ impl Trainer {
         })
     }
 
-    /// Adds watches for all episodes from now on except those of evaluations. Numbers count up
-    /// through a training run as if games were played to the end; where games end early, a number
-    /// may recur with another seed. Watches do not affect learning.
+    /// Adds watches for all episodes from now on, except those of evaluations. Numbers count up
+    /// through a training run as if games were played to the end; if games end early, a number may
+    /// recur with a different seed. Watches do not affect learning.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a game cannot begin.
@@ -204,7 +205,7 @@ impl Trainer {
         &self.state.learner
     }
 
-    /// The number of samples learned so far, and in all stages.
+    /// The number of samples learned so far, and the number in all stages.
     pub fn samples(&self) -> (u64, u64) {
         (
             self.state.samples,
@@ -405,8 +406,8 @@ impl Trainer {
             played,
         };
         let won = evaluated.won();
-        // By evaluation games with the same seeds each time, since returns from self-play are not
-        // informative.
+        // Decided by evaluation games with the same seeds each time, since returns from self-play
+        // are not informative.
         let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
         if is_best {
             self.state.best = Some(Best {
@@ -419,8 +420,8 @@ impl Trainer {
         Ok((Some(evaluated), is_best))
     }
 
-    /// Starts the next stage or restarts all games if due; the state of the games is then
-    /// irrelevant.
+    /// Starts the next stage or restarts all games if due; then the state of the games does not
+    /// matter.
     fn begin_anew(&mut self, evaluated: Option<&Evaluated>) -> Result<bool, SetupError> {
         let state = &mut self.state;
         let stage: &Stage = &self.training.stage[state.stage];
@@ -432,8 +433,9 @@ impl Trainer {
         if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
             return Ok(false);
         }
-        // Elsewhere, a state would need every helm in every game: it holds the actions since the
-        // last restart instead. After a restart, it is only the learner and the opponents.
+        // At any other time, a state would need every helm in every game; instead it contains the
+        // actions since the last restart. After a restart, it contains only the learner and the
+        // opponents.
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
         (state.past_at_restart, state.played) = (vec![], vec![]);
         if is_over {
@@ -456,7 +458,7 @@ impl Trainer {
     }
 }
 
-/// Plays and learns once by PPO, after this fraction (`done`) of all samples.
+/// Plays and learns once by PPO, after the fraction `done` of all samples.
 fn update_by_ppo(
     learner: &mut ActorCritic,
     environment: &mut VectorEnvironment,
@@ -529,7 +531,7 @@ fn environment(
     Ok(environment)
 }
 
-/// Brings games at their restart to the state after these updates.
+/// Brings games from their restart to the state after these updates.
 fn play_again(
     environment: &mut VectorEnvironment,
     updates: &[PlayedUpdate],
@@ -558,7 +560,7 @@ fn first_number(training: &Training, epoch: u64) -> u64 {
 }
 
 /// The evaluation games: those of the last stage, against each opponent of the evaluation. They
-/// need neither a teacher nor the truth for a critic.
+/// need neither a teacher nor a critic's true state.
 fn judges(training: &Training, last: &Setup) -> Result<Vec<(String, Setup)>, SetupError> {
     let base = Setup {
         teacher: None,

@@ -40,15 +40,15 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
-            // Entries of the 2023 games used TD3 and double DQN; with these two, their paper's
-            // results can be reproduced.
+            // Entries of the 2023 games used TD3 and double DQN, so that the results of their paper
+            // can be reproduced.
             if is_new && known < settings.warm_up {
                 return counts.iter().map(|_| td3::drawn(stream)).collect();
             }
             let outputs = pool.install(|| outputs(actor, observations));
             let explored = |(output, counts): (&[f32], &bool)| {
-                // The action of a boat that does not follow it has no effect: critics learn this
-                // for every action.
+                // If a boat does not follow its action, the action has no effect: critics learn
+                // this for every action.
                 if *counts {
                     td3::explored(td3::action(output), settings.exploration, stream)
                 } else {
@@ -110,8 +110,8 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
         let choose = |observations: &[f32], counts: &[bool], _: usize| -> Vec<u16> {
             let outputs = pool.install(|| outputs(network, observations));
             let explored = |(values, counts): (&[f32], &bool)| {
-                // The action of a boat that does not follow it has no effect: the network learns
-                // this for every action.
+                // If a boat does not follow its action, the action has no effect: the network
+                // learns this for every action.
                 dqn::explored(values, if *counts { epsilon } else { 1.0 }, stream) as u16
             };
             outputs
@@ -139,7 +139,7 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
     }
 }
 
-/// Plays this many steps of all games and stores those of boats that a policy controls. `choose`
+/// Plays this many steps of all games, and stores those of boats that a policy controls. `choose`
 /// receives the observations, which of them count, and the number of transitions.
 fn play<A: Copy + Default>(
     environment: &mut VectorEnvironment,

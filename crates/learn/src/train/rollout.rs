@@ -1,4 +1,4 @@
-//! A rollout: steps of all games with the current policy as samples.
+//! A rollout: steps of all games with the current policy, as samples.
 
 use super::outputs;
 use crate::environment::{Finished, SetupError, VectorEnvironment};
@@ -91,8 +91,8 @@ impl Rollout {
         Ok(rollout)
     }
 
-    /// Records the teacher's actions in the last step. Steps without a corresponding action are not
-    /// learned.
+    /// Records the teacher's actions in the last step. Nothing is learned from steps without a
+    /// corresponding action.
     fn take_taught(&mut self, environment: &VectorEnvironment) {
         let (rows, per_game) = environment.rows();
         let first = self.counts.len() - rows;

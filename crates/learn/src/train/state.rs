@@ -27,16 +27,16 @@ pub(super) struct State {
     pub(super) best: Option<Best>,
     /// The past policies at the last restart of all games; empty until the first update after it.
     pub(super) past_at_restart: Vec<PastSelf>,
-    /// The updates since then: when replayed, they bring the games to this state.
+    /// The updates since then, which bring the games to this state when replayed.
     pub(super) played: Vec<PlayedUpdate>,
 }
 
-/// What an update did to the games.
+/// The effect of an update on the games.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PlayedUpdate {
     /// The opponents' draw weights.
     pub(super) weights: Vec<f64>,
-    /// Steps × rows.
+    /// The actions, steps × rows.
     pub(super) actions: Vec<Action>,
     /// The past policy that became an opponent after the steps.
     pub(super) kept: Option<PastSelf>,
@@ -45,7 +45,7 @@ pub(super) struct PlayedUpdate {
 /// An evaluation of a policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluated {
-    /// Samples learned by then.
+    /// Samples learned by that time.
     pub samples: u64,
     /// Index of the stage.
     pub stage: usize,
@@ -67,7 +67,7 @@ impl Evaluated {
 /// The best policy of a training run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
-    /// Samples learned by then.
+    /// Samples learned by that time.
     pub samples: u64,
     /// The fraction of all evaluation games won; a draw counts half.
     pub won: f64,
@@ -75,7 +75,7 @@ pub struct Best {
     pub onnx: Vec<u8>,
 }
 
-/// The beginning of a state: it identifies the training.
+/// The beginning of a state, which identifies the training.
 #[derive(PartialEq, Serialize, Deserialize)]
 struct Head {
     version: String,
@@ -93,19 +93,19 @@ impl Head {
     }
 }
 
-/// Why a training run cannot be resumed.
+/// A reason why a training run cannot be resumed.
 #[derive(Debug, Error)]
 pub enum StateError {
     /// Not the state of a training run.
     #[error("it is not the state of a training run, or it is damaged")]
     Damaged,
-    /// The state was written by another version.
+    /// The state was written by a different version.
     #[error("it was written by version {found}, expected {}", primitives::VERSION)]
     Version {
         /// The version in the state.
         found: String,
     },
-    /// The state is from another training run.
+    /// The state is from a different training run.
     #[error("it is the state of a different training run: the training file has changed since")]
     Other,
     /// A setup cannot be played.
@@ -140,14 +140,14 @@ impl State {
     }
 
     pub(super) fn read(bytes: &[u8], training: &Training) -> Result<State, StateError> {
-        // Read first, because other versions may use another format after it.
+        // Read it first, because other versions may use a different format after it.
         let (version, _) =
             postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
         if version != primitives::VERSION {
             return Err(StateError::Version { found: version });
         }
-        // A flipped bit in a weight is a valid number. The checksum keeps it from changing the
-        // policy silently.
+        // A flipped bit in a weight is a valid number. The checksum prevents it from silently
+        // changing the policy.
         let (bytes, sum) = bytes.split_last_chunk().ok_or(StateError::Damaged)?;
         if xxh3_64(bytes) != u64::from_le_bytes(*sum) {
             return Err(StateError::Damaged);

@@ -1,4 +1,4 @@
-//! The learning algorithm of a training run, selected by the table in its file, and its settings.
+//! The learning algorithm of a training run, selected by a table in its file, and its settings.
 
 use super::Training;
 use schemars::JsonSchema;
@@ -69,7 +69,7 @@ pub struct Ppo {
     /// Initial step size of the optimiser.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// Fraction of it left at the end of the last stage; it falls linearly.
+    /// Fraction of the step size left at the end of the last stage; it falls linearly.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.1))]
     pub learning_rate_end: f32,
     /// Limit of the relative change of an action's probability.
@@ -135,7 +135,7 @@ pub struct Td3 {
     /// Standard deviation of noise on the target policy's actions.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.2))]
     pub smoothing: f32,
-    /// Limit of that noise.
+    /// Limit of this noise.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub smoothing_max: f32,
     /// Steps of the critics' optimisers per step of the policy's.

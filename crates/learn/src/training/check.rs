@@ -1,4 +1,4 @@
-//! Checks a training file and all files it names.
+//! Checks a training file and all files that it names.
 
 use super::{Stage, Training};
 use crate::rewards::Rewards;
@@ -64,7 +64,7 @@ fn check_opponents(document: &Document<Training>, at: &str, stage: &Stage, i: us
         return;
     }
     let has_strategies = stage.strategies > 0.0 && !stage.opponent.is_empty();
-    // The first stage may start without past policies; the policy then plays against itself.
+    // The first stage may start without past policies; then the policy plays against itself.
     if !has_strategies && stage.self_play == 0.0 && stage.past_selves == 0.0 {
         let message = format!(
             "stage {:?} has no opponents, expected opponent, self_play or past_selves",

@@ -42,13 +42,13 @@ pub struct Training {
     pub seed: u64,
     /// The networks.
     pub network: Layers,
-    /// Proximal policy optimisation, used without the table of another algorithm.
+    /// Proximal policy optimisation, the default algorithm.
     pub ppo: Ppo,
     /// Instead of `ppo`, for continuous actions.
     pub td3: Option<Td3>,
     /// Instead of `ppo`, for discrete actions.
     pub dqn: Option<Dqn>,
-    /// Which past policies are kept as opponents.
+    /// Past policies kept as opponents.
     pub league: League,
     /// How policies are evaluated; the best is kept.
     pub evaluation: Evaluation,
@@ -75,8 +75,8 @@ pub enum CriticInput {
     /// The policy's inputs.
     #[default]
     Observation,
-    /// That and the truth about all boats, the flags and the sea, which no policy receives (a
-    /// central critic: Lowe and others, NeurIPS 2017).
+    /// The policy's inputs and the true state of all boats, the flags and the sea, which no policy
+    /// receives (a central critic: Lowe and others, NeurIPS 2017).
     Truth,
 }
 
@@ -102,7 +102,7 @@ pub struct League {
     pub most: usize,
     /// Opponents are drawn in proportion to this power of their fraction of wins; 0: uniformly
     /// (prioritised fictitious self-play, Vinyals and others, Nature 2019). Every opponent has a
-    /// small minimum.
+    /// small minimum weight.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub priority: f64,
 }
@@ -144,7 +144,7 @@ pub struct Stage {
     /// Strategy that plays the policy's boats in this stage; the policy imitates it (behaviour
     /// cloning), and the critic learns its returns. Default: none.
     pub teacher: Option<Teacher>,
-    /// Strategy file of mates: the policy drives one boat of its team, each in turn. Default: none,
+    /// Strategy file of teammates: the policy drives one boat at a time, in turn. Default: none,
     /// the policy drives all.
     #[schemars(with = "Option<FilePath>")]
     pub mates: Option<PathBuf>,
@@ -167,10 +167,11 @@ pub struct Stage {
     /// Maximum duration of an episode, s. Default: whole games.
     #[schemars(range(min = 1, max = 86400))]
     pub episode_max_s: Option<f64>,
-    /// Samples after which it ends.
+    /// Samples after which the stage ends.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
     pub samples: u64,
-    /// Fraction of games won in an evaluation that ends it early; draws count half. Default: never.
+    /// Fraction of games won in an evaluation that ends the stage early; draws count half. Default:
+    /// never.
     #[schemars(range(min = 0, max = 1))]
     pub until_won: Option<f64>,
 }
@@ -181,8 +182,8 @@ pub struct Teacher {
     /// Strategy file.
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
-    /// With `action = "options"`: the option of each mode. An omitted mode is the option of the
-    /// same name, or is not learned from.
+    /// With `action = "options"`: the option for each mode. An omitted mode uses the option with
+    /// the same name, or is not learned from.
     #[schemars(extend("default" = {}))]
     pub options: BTreeMap<String, String>,
 }

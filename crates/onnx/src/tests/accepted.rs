@@ -1,4 +1,4 @@
-//! Which parts of an accepted file are evaluated, and their maximum cost.
+//! The parts of an accepted file that are evaluated, and their maximum cost.
 
 use super::*;
 
@@ -90,7 +90,7 @@ fn a_declared_output_that_deviates_is_a_warning() {
     );
 }
 
-/// A second output of a dropout, its mask, has no meaning here.
+/// A second output of a dropout, its mask, has no meaning in inference.
 #[test]
 fn only_the_first_output_of_a_normalisation_can_be_used() {
     let mut model = sound();

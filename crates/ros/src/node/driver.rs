@@ -1,4 +1,4 @@
-//! A mind that follows ROS 2's requests for its boat.
+//! A mind that follows requests from ROS 2 for its boat.
 
 use super::Incoming;
 use super::graph::Graph;
@@ -13,8 +13,8 @@ use primitives::VehicleId;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A request lasts no longer than this, whatever the game time: a paused game must not resume with
-/// the request of a program that has ended.
+/// Maximum age of a request in wall-clock time, whatever the game time: a paused game must not
+/// resume with a request from a program that has ended.
 const WALL_MAX: Duration = Duration::from_secs(5);
 
 /// The newest request for a boat.
@@ -77,12 +77,12 @@ pub(super) fn subscribe(
     )
 }
 
-/// The mind of a boat that ROS 2 drives.
+/// The mind of a boat driven from ROS 2.
 pub(super) struct Driver {
     pub(super) boat: VehicleId,
     pub(super) cell: Arc<RequestCell>,
     pub(super) follower: Follower,
-    /// Destination of pictures on their way to ROS 2.
+    /// Where pictures go on their way to ROS 2.
     pub(super) incoming: Arc<Latest<Incoming>>,
 }
 

@@ -72,7 +72,7 @@ impl Graph {
         })
     }
 
-    /// Calls `receive` with every message on `topic`, or with none if it cannot be decoded.
+    /// Calls `receive` with every message on `topic`, or with `None` if it cannot be decoded.
     pub(super) fn subscribe<M: RosMessage + DeserializeOwned>(
         &mut self,
         node: &Node,
@@ -104,7 +104,7 @@ impl Graph {
             .map(drop)
     }
 
-    /// Shows the token of an endpoint, and returns its global identifier.
+    /// Publishes the token of an endpoint, and returns its global identifier.
     fn declare(
         &mut self,
         node: &Node,
@@ -131,7 +131,7 @@ impl Drop for Graph {
 }
 
 impl<M: RosMessage + Serialize> Topic<M> {
-    /// Sends the message that `make` returns, if anyone has subscribed.
+    /// Sends the message that `make` returns, if there is a subscriber.
     pub(super) fn send(&mut self, make: impl FnOnce() -> M) -> Result<(), BusError> {
         if self.publisher.is_heard() {
             self.send_bytes(codec::encode_plain(&make()))

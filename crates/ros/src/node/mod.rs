@@ -1,8 +1,8 @@
-//! The bridge on both networks: finds a game, publishes it to ROS 2, and drives boats as ROS 2
-//! requests.
+//! The bridge on both networks: finds a game, publishes it to ROS 2, and drives boats as requested
+//! from ROS 2.
 //!
 //! Observing and driving have separate sessions with the sim, and ROS 2 has a third. Only the
-//! newest frame and picture are kept: a slow ROS network loses messages and delays nothing.
+//! newest frame and picture are kept: a slow ROS network loses messages but delays nothing.
 
 mod driver;
 mod graph;
@@ -32,12 +32,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// How often a bridge without news checks whether the game continues.
+/// Interval at which a bridge without news checks whether the game continues.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long the sim may be missing before the game is considered over. A paused game sends no
-/// frames.
+/// Absence of the sim after which the game counts as over. A paused game sends no frames.
 const MISSING_MAX: Duration = Duration::from_secs(5);
-/// How long an agent without pictures waits for the sim.
+/// Time for which an agent without pictures waits for the sim.
 const SILENCE: Duration = Duration::from_secs(60);
 
 /// The settings of a bridge.
@@ -50,9 +49,9 @@ pub struct Settings {
     pub router: String,
     /// The ROS domain.
     pub domain: u32,
-    /// Names of the boats that ROS 2 drives.
+    /// Names of the boats driven from ROS 2.
     pub vehicles: Vec<String>,
-    /// How long a request for a boat is valid, in game time.
+    /// Validity of a request for a boat, in game time.
     pub ttl: SimTime,
     /// Whether the truth is published.
     pub shows_truth: bool,
@@ -64,7 +63,7 @@ pub struct Settings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// What a bridge reports to the program that runs it.
+/// Reports of a bridge to the program that runs it.
 pub enum News<'a> {
     /// The ROS network is available.
     OnRos {
@@ -121,16 +120,16 @@ enum Incoming {
     Picture(Box<Picture>),
 }
 
-/// What the threads of a bridge share.
+/// State shared by the threads of a bridge.
 #[derive(Clone)]
 struct Shared {
     /// The newest frame, then the newest picture of each team.
     incoming: Arc<Latest<Incoming>>,
     statuses: Arc<Statuses>,
     refusals: Arc<Watched<Refusals>>,
-    /// Ends all threads.
+    /// Set to end all threads.
     ended: Arc<AtomicBool>,
-    /// Why the agent waits for its boats, and how it ended.
+    /// Why the agent is waiting for its boats, and how it ended.
     agent_news: Arc<Watched<Option<String>>>,
     agent_end: Arc<Watched<Option<Result<(), NodeError>>>>,
 }
@@ -360,8 +359,8 @@ impl Bridge {
         if let Some(reason) = self.shared.agent_news.visit(Option::take) {
             tell(News::Looking { reason: &reason });
         }
-        // Reported at each power of ten, not for each message: a hostile node could fill the
-        // terminal.
+        // Refusals are reported at each power of ten, not for each message: otherwise a hostile
+        // node could fill the terminal.
         if refused.total() > self.told.total().saturating_mul(10) {
             self.told = refused;
             tell(News::Refused { refused });

@@ -19,10 +19,10 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How often diagnostics and the field are sent.
+/// Interval at which diagnostics and the field are sent.
 const SELDOM: Duration = Duration::from_secs(1);
 
-/// The newest status of each gateway, by boat, and when it arrived.
+/// The newest status of each gateway and its time of arrival, by boat.
 pub(super) type Statuses = Watched<BTreeMap<String, (GatewayStatus, Instant)>>;
 
 /// The topics of one boat's motion.
@@ -126,7 +126,7 @@ impl Publisher {
         })
     }
 
-    /// The game time, once for every decision.
+    /// Sends the game time, once per decision.
     fn tick(&mut self, stamp: Stamp) -> Result<(), BusError> {
         if stamp.valid_ns <= self.now && stamp.seq > 0 {
             return Ok(());
@@ -137,7 +137,7 @@ impl Publisher {
         })
     }
 
-    /// The truth. `bytes` are those of the frame.
+    /// Sends the truth. `bytes` are those of the frame.
     pub(super) fn send_frame(&mut self, bytes: Vec<u8>, frame: &Frame) -> Result<(), BusError> {
         self.tick(frame.stamp)?;
         if self.truth.is_empty() {
@@ -164,7 +164,7 @@ impl Publisher {
             .send(|| markers::game(&self.scenario, frame))
     }
 
-    /// Measurements of a team's driven boats.
+    /// Sends measurements of a team's driven boats.
     pub(super) fn send_picture(&mut self, picture: &Picture) -> Result<(), BusError> {
         self.tick(picture.stamp)?;
         for boat in &picture.own {
@@ -182,7 +182,7 @@ impl Publisher {
             .map_or(Ok(()), |topic| topic.send(|| picture.clone()))
     }
 
-    /// Diagnostics and the field, once a second.
+    /// Sends diagnostics and the field, once a second.
     pub(super) fn send_seldom(
         &mut self,
         statuses: &Statuses,

@@ -13,14 +13,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often an idle worker checks whether the bridge has ended.
+/// Interval at which an idle worker checks whether the bridge has ended.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// Maximum number of queued requests; further requests are dropped.
 const REQUESTS: usize = 16;
 
 const SET_BOOL: &str = "std_srvs/srv/SetBool";
 const TRIGGER: &str = "std_srvs/srv/Trigger";
-/// The services: name, type, and the commands of `true` and `false`. A trigger has only the first.
+/// The services: name, type, and the commands for `true` and `false`. A trigger has only the first.
 const SERVICES: [(&str, &str, [Control; 2]); 5] = [
     (
         "/squall/e_stop",
@@ -50,7 +50,7 @@ struct Asked {
 pub(super) struct Operator {
     pub(super) bus: Bus,
     pub(super) game: GameName,
-    /// Whether ROS 2 may do more than stop boats.
+    /// Whether ROS 2 may send commands other than stops.
     pub(super) may_all: bool,
 }
 
@@ -62,7 +62,7 @@ pub(super) fn open(
     refusals: &Arc<Watched<Refusals>>,
     stop: &Arc<AtomicBool>,
 ) -> Result<[NodeThread; 2], BusError> {
-    // Stops have their own queue, so that they wait for no other command.
+    // Stops have their own queue, so that they need not wait for other commands.
     let (stops, stops_asked) = inbox::<Asked>(REQUESTS);
     let (others, others_asked) = inbox::<Asked>(REQUESTS);
     for (service, type_name, commands) in SERVICES {

@@ -73,7 +73,7 @@ fn check_keys(document: &Document<raw::Game>, path: &str, fault: &Fault) {
     }
 }
 
-/// The part required by this kind of fault that the boat lacks.
+/// The part that this kind of fault requires and the boat lacks.
 fn lacks(kind: FaultKind, boat: &Boat) -> Option<&'static str> {
     match kind {
         FaultKind::AgentLost | FaultKind::LinkLost => None,

@@ -8,8 +8,8 @@ use crate::source::tidied;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Files of one kind that a game refers to. Each is read once; once per owner if it has numbers to
-/// draw, or is a strategy.
+/// Files of one kind that a game refers to. Each is read once, or once per owner if it is a
+/// strategy or has numbers to draw.
 pub(super) struct FileCache<F> {
     pub(super) items: Vec<F>,
     path_of: BTreeMap<String, PathBuf>,
@@ -26,7 +26,8 @@ impl<F: ScenarioFile> FileCache<F> {
         }
     }
 
-    /// The index of `owner`'s version of the file that `given`, at `path` of the game, refers to.
+    /// The index of `owner`'s version of the file that `given`, at `path` in the game file, refers
+    /// to.
     pub(super) fn index(
         &mut self,
         game: &Document<raw::Game>,
@@ -48,7 +49,7 @@ impl<F: ScenarioFile> FileCache<F> {
         Some(index)
     }
 
-    /// The index of a file, regardless of its name: two versions of one strategy may meet.
+    /// The index of a file, regardless of its name: two versions of one strategy may occur.
     pub(super) fn index_at(
         &mut self,
         game: &Document<raw::Game>,

@@ -28,7 +28,7 @@ pub(super) struct Entry {
     pub(super) team: TeamId,
     pub(super) boat: usize,
     strategy: usize,
-    /// The start position in its file; `None`: on the team's line.
+    /// The start position in its file; `None` means on the team's line.
     pub(super) start_position: Option<StartPosition>,
     pub(super) heading_deg: Option<f64>,
     source: Source,
@@ -132,7 +132,7 @@ impl ScenarioFile for Scenario {
     }
 }
 
-/// The radio links; the station is in the middle of the field if the file names no other place.
+/// The radio links; the station is at the centre of the field unless the file gives its position.
 fn link(document: &Document<raw::Game>, field: &Field) -> Option<Link> {
     let mut link = document.raw.link.clone();
     if !document.has("link.station") {
@@ -158,7 +158,7 @@ fn check_duration(document: &Document<raw::Game>) {
     }
 }
 
-/// Reseeds must be in ascending order.
+/// Checks that reseeds are in ascending order.
 fn check_reseed(document: &Document<raw::Game>) {
     for (i, [last, next]) in document.raw.reseed.array_windows().enumerate() {
         if next.after_s <= last.after_s {
@@ -203,7 +203,7 @@ fn clock(document: &Document<raw::Game>) -> (SimTime, u32) {
     (tick, (decision.0 / tick.0) as u32)
 }
 
-/// A boat that is stable at the default tick may be unstable at a longer one.
+/// Checks the tick: a boat that is stable at the default tick may be unstable at a longer one.
 fn check_tick(document: &Document<raw::Game>, tick: SimTime, boats: &[Boat]) {
     for boat in boats.iter().filter(|_| document.has("tick_s")) {
         let (motion, rate_per_s) = fastest_decay(boat);
@@ -219,7 +219,7 @@ fn check_tick(document: &Document<raw::Game>, tick: SimTime, boats: &[Boat]) {
     }
 }
 
-/// The referee checks only at whole ticks.
+/// Checks that the referee checks only at whole ticks.
 fn check_looks(document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
     let Some(rules) = rules else { return };
     for (key, period) in [
@@ -238,7 +238,7 @@ fn check_looks(document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rul
     }
 }
 
-/// Models have a fixed team size, unless they have spare slots.
+/// Checks that models suit the team size, which is fixed unless they have spare slots.
 fn check_models(document: &Document<raw::Game>, entries: &[Entry], strategies: &[Strategy]) {
     for Entry {
         name,
@@ -417,7 +417,7 @@ impl Fleet<'_> {
         is_new
     }
 
-    /// Whether there is room for this many vehicles at `path`.
+    /// Whether there is space for this many vehicles at `path`.
     fn is_room(&self, path: &str, count: usize) -> bool {
         let total = self.entries.len() + count;
         if total > VEHICLES_MAX {
@@ -519,7 +519,7 @@ impl Fleet<'_> {
     }
 }
 
-/// The path of a strategy given by path, or by name in the folder of strategies.
+/// The path of a strategy given by path, or by its name in the folder of strategies.
 fn strategy_path(given: &str) -> String {
     let is_name = !given.contains(['/', '\\', '.']);
     if is_name {

@@ -14,7 +14,7 @@ impl ScenarioFile for Rules {
         rules.win_score = rules.win_score.filter(|win_score| *win_score > 0);
         let sharing = &mut rules.sharing;
         sharing.view_rad = sharing.view_rad.filter(|rad| *rad < f64::to_radians(360.0));
-        // Inside a keep-out circle, boats must still be able to grab, capture and untag at their
+        // Outside a keep-out circle, boats must still be able to grab, capture and untag at their
         // own flag.
         let needed = [
             (

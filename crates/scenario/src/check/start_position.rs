@@ -14,13 +14,13 @@ use primitives::id::TeamId;
 use primitives::near::Near;
 use rules::field::Field;
 
-/// Margin of a default rectangle on either side, m.
+/// Margin of a default rectangle on each side, m.
 const MARGIN_M: f64 = 2.0;
-/// Maximum fraction of the rectangle for the boats' gaps as squares. Sequential placement jams at
-/// about 0.69.
+/// Maximum fraction of the rectangle taken up by the boats' gaps as squares. Sequential placement
+/// jams at about 0.69.
 const FULLEST: f64 = 0.5;
 
-/// The start position given for the vehicle at `path`; `None`: on the team's line.
+/// The start position given for the vehicle at `path`; `None` means on the team's line.
 pub(super) fn stated(
     document: &Document<raw::Game>,
     path: &str,
@@ -105,9 +105,9 @@ pub(super) fn somewhere(
     })
 }
 
-/// The start positions of all entries, in order. Those without a given one are on their team's
-/// line: midway between its flag and the scrimmage line, evenly spaced from port to starboard,
-/// facing the opponent.
+/// The start positions of all entries, in order. Vehicles without a given position are on their
+/// team's line: midway between its flag and the scrimmage line, evenly spaced from port to
+/// starboard, facing the opponent.
 pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let plan = &field.plan;
     let along_m = (plan.flag_inset_m + plan.width_m / 2.0) / 2.0;
@@ -165,7 +165,7 @@ pub(super) fn check_clear(
         let (b, _, b_length_m) = placed[usize::from(pair.b)];
         let apart_m = pair.distance_squared.sqrt();
         let least_m = a_length_m.max(b_length_m);
-        // Reports each crowded boat once, and each crowded fleet once.
+        // Report each crowded boat or fleet only once.
         if apart_m < least_m && b.path != last {
             last = &b.path;
             let message = format!(

@@ -1,4 +1,4 @@
-//! Observations: the values that a policy receives. `agent` writes them.
+//! Observations: the values that a policy receives. The crate `agent` encodes them.
 
 pub mod pyquaticus;
 pub mod squall;
@@ -7,24 +7,25 @@ use pyquaticus::Edition;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Which values a policy receives.
+/// The values that a policy receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ObservationSpace {
-    /// Those of Pyquaticus, in its order: 21 of the boat itself and 8 of each other boat, each from
-    /// -1 to 1.
+    /// The values of Pyquaticus, in its order: 21 for the boat itself and 8 for each other boat,
+    /// each from -1 to 1.
     Pyquaticus,
-    /// Those of Pyquaticus from November 2023 to January 2024: `pyquaticus` without the scores, and
-    /// distances relative to the field's diagonal plus 10 m, but that of the scrimmage line to half
-    /// the field's width.
+    /// The values of Pyquaticus from November 2023 to January 2024: `pyquaticus` without the
+    /// scores, and with distances relative to the field's diagonal plus 10 m, but the distance to
+    /// the scrimmage line relative to half the field's width.
     #[serde(rename = "pyquaticus_2023")]
     Pyquaticus2023,
-    /// Those of the 2026 competition: `pyquaticus`, and for each boat whether it is out of action.
+    /// The values of the 2026 competition: `pyquaticus`, and for each boat whether it is out of
+    /// action.
     #[serde(rename = "pyquaticus_2026")]
     Pyquaticus2026,
-    /// Those of Squall: what sensors and radio report, in a frame that is the same for both teams.
+    /// Squall's own values: sensor and radio data, in a frame that is the same for both teams.
     Squall {
-        /// Number of mates with a slot.
+        /// Number of teammates with a slot.
         #[schemars(range(min = 0, max = 255))]
         mates: u8,
         /// Number of enemies with a slot, nearest first.
@@ -55,7 +56,7 @@ impl ObservationSpace {
         }
     }
 
-    /// The number of values for a boat with this many mates and enemies.
+    /// The number of values for a boat with this many teammates and enemies.
     pub fn size(self, mates: usize, enemies: usize) -> usize {
         match (self, self.edition()) {
             (_, Some(edition)) => {
@@ -109,7 +110,8 @@ impl ObservationSpace {
     }
 }
 
-/// The names of the boat's own values, then of each other boat's: `mate_1_speed`, `enemy_2_speed`.
+/// The names of the boat's own values, then those of each other boat: `mate_1_speed`,
+/// `enemy_2_speed`.
 fn names_of(own: &[&str], other: &[&str], mates: usize, enemies: usize) -> Vec<String> {
     let mates = (1..=mates).map(|i| format!("mate_{i}"));
     let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));

@@ -1,6 +1,6 @@
 //! The names of the values in the observation spaces of Pyquaticus.
 
-/// Incremented when the meaning of a value changes: models from another version are rejected.
+/// Incremented when the meaning of a value changes: models of a different version are rejected.
 pub(super) const VERSION: u32 = 1;
 
 /// A version of Pyquaticus' observations.

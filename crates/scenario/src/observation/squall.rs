@@ -1,12 +1,12 @@
 //! The names of the values in the observation space `squall`.
 
-/// Incremented when the meaning of a value changes: models from another version are rejected.
+/// Incremented when the meaning of a value changes: models of a different version are rejected.
 pub(super) const VERSION: u32 = 1;
 
-/// Number of values of another boat: presence, position, motion, state.
+/// Number of values for another boat: presence, position, motion, state.
 pub const OTHER: usize = 16;
 
-/// Values of the boat itself, its goals and the game.
+/// Values for the boat itself, its goals and the game.
 pub(super) const OWN_NAMES: [&str; 44] = [
     "position_ahead",
     "position_port",

@@ -5,8 +5,7 @@ use crate::sensor::Sensors;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A kind of boat. The origin is midships: x ahead, y to
-/// starboard, yaw clockwise.
+/// A kind of boat. The origin is amidships: x ahead, y to starboard, yaw clockwise.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(extend("x-drawn" = true))]
 pub struct Boat {

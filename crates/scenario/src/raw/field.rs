@@ -46,7 +46,7 @@ pub(crate) struct Flag {
     pub(crate) at: [f64; 2],
 }
 
-/// A team, by its order in the game file: a field does not know the teams' names.
+/// A team, by its order in the game file; a field does not know the teams' names.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Side {

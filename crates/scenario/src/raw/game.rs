@@ -18,7 +18,7 @@ pub struct Game {
     pub(crate) rules: FilePath,
     /// Sea file. Default: fresh water at rest.
     pub(crate) sea: Option<FilePath>,
-    /// Boat file of all vehicles without their own.
+    /// Default boat file, for vehicles that name none.
     pub(crate) boat: Option<FilePath>,
     /// Radio links between minds and boats. Default: no delay, no loss.
     #[schemars(extend("x-drawn" = true))]
@@ -26,10 +26,10 @@ pub struct Game {
     /// Faults during the game, by name.
     #[schemars(extend("default" = {}))]
     pub(crate) fault: BTreeMap<String, Fault>,
-    /// Random seed: selects the game.
+    /// Random seed; each gives a different game.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub(crate) seed: u64,
-    /// Seeds that replace `seed` during the game, in order of time.
+    /// Seeds that replace `seed` during the game, in chronological order.
     #[schemars(length(max = 1000), extend("default" = []))]
     pub(crate) reseed: Vec<Reseed>,
     /// End of the game, s. Default: `time_limit_s` of the rules.
@@ -44,7 +44,7 @@ pub struct Game {
     /// Lockstep: wall-clock time that the sim waits for a mind before treating it as lost, s.
     #[schemars(range(min = 0.001, max = 3600), extend("default" = 5))]
     pub(crate) patience_s: f64,
-    /// Real time: maximum age of an order, in simulated time, before the boat holds, s.
+    /// In real-time games: maximum age of an order, in simulated seconds, before the boat holds.
     #[schemars(range(min = 0.01, max = 3600), extend("default" = 1))]
     pub(crate) order_ttl_s: f64,
     /// The two teams; the first has the end at the field's `corner`.
@@ -60,7 +60,7 @@ pub struct Game {
 pub(crate) struct Team {
     /// Name.
     pub(crate) name: Name,
-    /// Strategy of its boats without their own: a path, or a name in `strategies/`.
+    /// Default strategy of the team's boats: a path, or a name in `strategies/`.
     pub(crate) strategy: Option<FilePath>,
 }
 
@@ -110,10 +110,10 @@ pub(crate) struct Fleet {
 /// A rectangle for random start positions, as seen from the team's own end.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Spawn {
-    /// From and to, m from the team's own end. Default: its own half, less 2 m at each end.
+    /// From and to, m from the team's own end. Default: its own half, minus 2 m at each end.
     #[schemars(inner(range(min = 0, max = 20000)))]
     pub(crate) along_m: Option<[f64; 2]>,
-    /// From and to, m from the port edge. Default: the whole depth, less 2 m at each edge.
+    /// From and to, m from the port edge. Default: the whole depth, minus 2 m at each edge.
     #[schemars(inner(range(min = 0, max = 20000)))]
     pub(crate) across_m: Option<[f64; 2]>,
     /// Minimum distance to other boats and obstacles, m.

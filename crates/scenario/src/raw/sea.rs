@@ -23,7 +23,7 @@ pub struct Sea {
     pub(crate) current: Current,
 }
 
-/// A spectrum defined by height and period, or by the wind that raised it.
+/// A spectrum given by height and period, or by the wind that raised it.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Waves {
     /// Shape of the spectrum.
@@ -79,7 +79,7 @@ pub(crate) enum Spectrum {
 pub(crate) enum Spreading {
     /// None: long crests.
     None,
-    /// Square of the cosine, up to 90° to either side.
+    /// Square of the cosine, up to 90° on each side.
     CosineSquared,
     /// cos^(2s) of half the angle.
     #[serde(rename = "cosine_2s")]
@@ -135,7 +135,7 @@ pub(crate) struct Current {
     pub(crate) wander: Option<Wander>,
     /// A tidal stream.
     pub(crate) tide: Option<Tide>,
-    /// A flow that grows linearly to its side.
+    /// A flow that grows linearly to one side.
     pub(crate) shear: Option<Shear>,
     /// Eddies at given positions.
     pub(crate) eddy: Vec<Eddy>,
@@ -160,7 +160,7 @@ pub(crate) struct Tide {
     pub(crate) phase: f64,
 }
 
-/// A flow that grows linearly to its side, as in a river from the bank.
+/// A flow that grows linearly to one side, as in a river from the bank.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Shear {
     /// Compass bearing of the flow, degrees.

@@ -15,7 +15,8 @@ pub struct Strategy {
     /// Description, in one line.
     #[schemars(extend("default" = ""))]
     pub(crate) about: String,
-    /// Program files, assigned to the team's boats in turn. Without it, this file is a program.
+    /// Program files, assigned to the team's boats in turn. Without this key, the file is a
+    /// program.
     #[schemars(length(min = 1, max = 1000))]
     pub(crate) roles: Option<Vec<FilePath>>,
     /// How roles are assigned to boats.
@@ -52,7 +53,7 @@ pub(crate) type Values = BTreeMap<String, Value>;
 pub(crate) enum Value {
     Number(f64),
     Truth(bool),
-    /// For a text variable one of its values, otherwise an expression.
+    /// For a string variable one of its values, otherwise an expression.
     Text(String),
 }
 
@@ -70,10 +71,10 @@ pub(crate) enum Variable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[schemars(rename = "Variable")]
 pub(crate) struct VariableTable {
-    /// Allowed texts; required for a text variable, and only there.
+    /// Allowed strings; required for string variables only.
     #[schemars(length(min = 1, max = 100))]
     pub(crate) values: Option<Vec<Name>>,
-    /// Initial value; required except for texts. Default: the first text.
+    /// Initial value; required except for strings. Default: the first string.
     pub(crate) initial: Option<Value>,
     /// Whether it is shared with the team.
     #[schemars(extend("default" = false))]
@@ -85,9 +86,9 @@ pub(crate) struct VariableTable {
 pub(crate) struct Mode {
     /// Name, unique in the program.
     pub(crate) name: Name,
-    /// Parent mode, which precedes this one. Default: none.
+    /// Parent mode, which must precede this one. Default: none.
     pub(crate) r#in: Option<String>,
-    /// Required, except for the last of siblings, which has none.
+    /// Condition; required, except for the last sibling, which has none.
     pub(crate) when: Option<String>,
     /// Values of variables, set when the mode begins.
     #[schemars(extend("default" = {}))]
@@ -99,14 +100,14 @@ pub(crate) struct Mode {
 pub(crate) struct Rule {
     /// Event, for example "enemy grabs". Required without `when`.
     pub(crate) on: Option<String>,
-    /// Applies only while this holds. Required without `on`.
+    /// The rule applies only while this holds. Required without `on`.
     pub(crate) when: Option<String>,
     /// New values by variable.
     #[schemars(extend("x-expected" = "values for variables"))]
     pub(crate) set: Values,
 }
 
-/// A behaviour: the keys of [`strategy::Behaviour`], one for each [`Moment`], and those of its
+/// A behaviour: the keys of [`strategy::Behaviour`], one key for each [`Moment`], and those of its
 /// [`Task`].
 #[derive(Debug, Deserialize)]
 #[serde(transparent)]

@@ -15,20 +15,20 @@ pub struct Behaviour {
     #[schemars(rename = "in", with = "Option<Vec<String>>")]
     #[schemars(length(min = 1), extend("x-expected" = "at least one mode"))]
     pub modes: Vec<bool>,
-    /// It runs only while this holds. Default: always.
+    /// It runs only while this condition holds. Default: always.
     #[schemars(with = "Option<String>")]
     pub when: Option<Expression>,
     /// Weight, at most that of the modes' op_region and avoid_collision. Safety behaviours default
     /// to 300.
     #[schemars(range(min = 0, max = 1000), extend("default" = 100))]
     pub weight: Parameter,
-    /// It completes after running for this long, s. Default: never.
+    /// Running time after which it completes, s. Default: never.
     #[schemars(range(min = 0, max = 86400))]
     pub duration_s: Option<Parameter>,
     /// Whether it restarts after completion.
     #[schemars(extend("default" = false))]
     pub perpetual: bool,
-    /// The values it posts, and when.
+    /// The values that it posts, and when.
     #[schemars(skip)]
     pub posts: Vec<Post>,
     /// Its task.
@@ -36,7 +36,7 @@ pub struct Behaviour {
     pub task: Task,
 }
 
-/// An assignment to a variable at a moment of a behaviour's life.
+/// An assignment to a variable at a moment in the life of a behaviour.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Post {
     /// The moment.
@@ -47,7 +47,7 @@ pub struct Post {
     pub value: Expression,
 }
 
-/// A moment of a behaviour's life, named by the key for assignments then, such as `on_run`.
+/// A moment in the life of a behaviour, named after the key for its assignments, such as `on_run`.
 #[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case", prefix = "on_")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -60,7 +60,7 @@ pub enum Moment {
     Active,
     /// It stops influencing the helm.
     Inactive,
-    /// It reaches a point or its time.
+    /// It reaches a point, or its time ends.
     Reach,
     /// It completes.
     Complete,

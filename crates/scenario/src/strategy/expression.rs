@@ -1,8 +1,8 @@
 //! Expressions of strategy files: conditions, weights and numbers that depend on the game.
 //!
 //! Files contain them in CEL. The check converts them to this tree, in which names are indices and
-//! types are correct. All values are `f64`: false and true are 0 and 1, a text is its index among
-//! the values of its variable.
+//! types are correct. All values are `f64`: false and true are 0 and 1, and a string is its index
+//! among the values of its variable.
 
 use super::{Fact, Measure, Place};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use strum::{EnumMessage, IntoStaticStr, VariantArray};
 /// A correctly typed expression.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Expression {
-    /// A number, a truth or a text.
+    /// A number, Boolean or string.
     Constant(f64),
     /// A variable of the strategy, by its index in [`super::Program::variables`].
     Variable(u16),
@@ -21,20 +21,20 @@ pub enum Expression {
     Measure(Measure, Place),
     /// A measure between two places.
     Between(Measure, Box<(Place, Place)>),
-    /// The number of mates for which the condition holds, with the mates' own values of shared
-    /// variables.
+    /// The number of teammates for which the condition holds, given each teammate's own values of
+    /// shared variables.
     Mates(Box<Expression>),
     /// Logical negation.
     Not(Box<Expression>),
     /// Arithmetic negation.
     Minus(Box<Expression>),
-    /// Two values joined.
+    /// Two values joined by an operator.
     Join(Join, Box<(Expression, Expression)>),
-    /// The second expression if the first is true, else the third.
+    /// The second expression if the first is true, otherwise the third.
     Choose(Box<(Expression, Expression, Expression)>),
 }
 
-/// How two values are joined.
+/// The operator that joins two values.
 #[derive(
     Clone,
     Copy,
@@ -81,7 +81,7 @@ pub enum Join {
     /// Product.
     #[strum(serialize = "*")]
     Times,
-    /// Quotient; division by 0 gives 0.
+    /// Quotient; division by 0 yields 0.
     #[strum(serialize = "/")]
     Over,
     /// Minimum.
@@ -110,7 +110,7 @@ pub trait Values {
     fn between(&self, _measure: Measure, _from: &Place, _to: &Place) -> f64 {
         0.0
     }
-    /// The number of mates for which `condition` holds.
+    /// The number of teammates for which `condition` holds.
     fn mates(&self, _condition: &Expression) -> f64 {
         0.0
     }
@@ -137,7 +137,7 @@ impl Expression {
             Expression::Not(inner) => truth(!inner.is_true(values)),
             Expression::Minus(inner) => -inner.value(values),
             Expression::Join(join, sides) => match (join, sides.0.value(values)) {
-                // One side may determine the value.
+                // One side may be enough to determine the value.
                 (Join::And, 0.0) => 0.0,
                 (Join::Or, left) if left != 0.0 => 1.0,
                 (_, left) => join.of(left, sides.1.value(values)),
@@ -159,7 +159,7 @@ impl Expression {
         self.value(values) != 0.0
     }
 
-    /// Its value, if it depends neither on the game nor on variables.
+    /// Its value if it depends neither on the game nor on variables.
     pub fn constant(&self) -> Option<f64> {
         let mut asks = false;
         self.walk(&mut |part| asks |= part.asks());
@@ -204,7 +204,7 @@ impl Expression {
 }
 
 impl Join {
-    /// Whether the result is true or false.
+    /// Whether the result is a Boolean.
     pub fn is_truth(self) -> bool {
         !matches!(
             self,
@@ -212,7 +212,7 @@ impl Join {
         )
     }
 
-    /// Joins two values.
+    /// The result for two values.
     pub fn of(self, a: f64, b: f64) -> f64 {
         match self {
             Join::And => truth(a != 0.0 && b != 0.0),

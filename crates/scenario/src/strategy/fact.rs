@@ -10,12 +10,12 @@ pub enum Kind {
     Truth,
     /// A number.
     Number,
-    /// One of these texts.
+    /// One of these strings.
     Text(Vec<String>),
 }
 
 impl Kind {
-    /// A truth if `is_truth`, otherwise a number.
+    /// A Boolean if `is_truth`, otherwise a number.
     pub fn of(is_truth: bool) -> Kind {
         if is_truth { Kind::Truth } else { Kind::Number }
     }
@@ -49,21 +49,21 @@ pub enum Fact {
     CanTag,
     /// An enemy carries one of the team's flags.
     FlagTaken,
-    /// The boat or a mate carries a flag.
+    /// The boat or a teammate carries a flag.
     EnemyFlagTaken,
-    /// A mate carries a flag.
+    /// A teammate carries a flag.
     MateHasFlag,
     /// An untagged enemy is on the team's side.
     EnemyInZone,
-    /// Number of such enemies.
+    /// Number of untagged enemies on the team's side.
     EnemiesInZone,
     /// Number of known enemies.
     Enemies,
     /// Number of tagged enemies.
     EnemiesTagged,
-    /// Number of mates.
+    /// Number of teammates.
     Mates,
-    /// Number of tagged mates.
+    /// Number of tagged teammates.
     MatesTagged,
     /// Index in the team, from 0, in the order of the game file.
     Rank,
@@ -77,7 +77,7 @@ pub enum Fact {
     TimeLeftS,
     /// Time since the mode began, s.
     ModeS,
-    /// Time since the last decision, s; for summing up times.
+    /// Time since the last decision, s; for summing times.
     StepS,
     /// Speed over the ground, m/s.
     #[strum(serialize = "speed_m_s")]
@@ -91,22 +91,22 @@ pub enum Fact {
 pub enum Measure {
     /// Distance from the boat, or between two places, m; 1e9 if unknown.
     Distance,
-    /// Rate at which that distance shrinks, m/s; 0 if unknown.
+    /// Rate at which the distance decreases, m/s; 0 if unknown.
     Closing,
     /// Speed over the ground, m/s; 0 if unknown.
     Speed,
-    /// Whether it exists now.
+    /// Whether it currently exists.
     Known,
     /// Whether it is on the team's side.
     OnOwnSide,
     /// Whether it is a tagged boat.
     IsTagged,
-    /// Number of mates nearer to it than the boat, except tagged ones and carriers.
+    /// Number of teammates nearer to it than the boat, except tagged boats and carriers.
     MatesNearer,
 }
 
 impl Fact {
-    /// Whether it is a truth rather than a number.
+    /// Whether it is a Boolean rather than a number.
     pub fn is_truth(self) -> bool {
         use Fact::{
             CanTag, Disabled, EnemyFlagTaken, EnemyInZone, FlagTaken, HasFlag, MateHasFlag,
@@ -130,7 +130,7 @@ impl Fact {
 }
 
 impl Measure {
-    /// Whether it is a truth rather than a number.
+    /// Whether it is a Boolean rather than a number.
     pub fn is_truth(self) -> bool {
         matches!(
             self,

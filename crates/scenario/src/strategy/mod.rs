@@ -1,6 +1,6 @@
 //! Strategies: how a team's boats play, as data.
 //!
-//! A [`Strategy`] assigns [`Program`]s to the boats of a team. One boat's helm follows a program:
+//! A [`Strategy`] assigns [`Program`]s to the boats of a team. A boat's helm follows one program:
 //! variables, a tree of modes, behaviours, and rules that assign values to variables.
 
 mod behaviour;
@@ -29,9 +29,9 @@ use crate::size::{COURSES_MAX, COURSES_MIN, SPEEDS_MAX, SPEEDS_MIN};
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
-/// Maximum number of contacts or obstacles that one behaviour responds to at a time: the nearest.
+/// Maximum number of contacts or obstacles to which one behaviour responds at a time: the nearest.
 pub const NEAREST_MAX: usize = 16;
-/// Maximum number of objective functions of a mode, one per contact or obstacle.
+/// Maximum number of objective functions in a mode, one per contact or obstacle.
 pub const FUNCTIONS_MAX: usize = 256;
 /// Maximum number of shared variables of a program.
 pub const SHARED_MAX: usize = 256;
@@ -109,7 +109,7 @@ pub struct Variable {
     pub name: String,
     /// The kind of its values.
     pub kind: Kind,
-    /// Its initial value: see [`Expression`] for how Booleans and texts become numbers.
+    /// Its initial value; see [`Expression`] for how Booleans and strings become numbers.
     pub initial: f64,
     /// Whether it is shared with the team.
     pub shared: bool,
@@ -122,7 +122,7 @@ pub struct Mode {
     pub name: String,
     /// Index of the parent mode; parents precede their children.
     pub parent: Option<usize>,
-    /// The first sibling whose condition holds is active; the last sibling has none.
+    /// The first sibling whose condition holds is active; the last sibling has no condition.
     pub when: Option<Expression>,
     /// Assignments when the mode begins.
     pub enter: Vec<(u16, Expression)>,
@@ -155,7 +155,7 @@ pub struct Trigger {
 pub enum Who {
     /// The boat itself.
     I,
-    /// A mate.
+    /// A teammate.
     Mate,
     /// An enemy.
     Enemy,
@@ -189,7 +189,7 @@ impl Strategy {
         self.roles.iter().filter_map(Program::host)
     }
 
-    /// The competition entries of its programs, for permission to run them.
+    /// The competition entries of its programs, to permit running them.
     pub fn hosts_mut(&mut self) -> impl Iterator<Item = &mut Host> {
         let behaviours = self.roles.iter_mut().flat_map(|role| &mut role.behaviours);
         behaviours.filter_map(|behaviour| match &mut behaviour.task {
@@ -241,7 +241,7 @@ impl Program {
             })
     }
 
-    /// Index of the variable whose text an external source sets, if the program has options.
+    /// Index of the variable whose string an external source sets, if the program has options.
     pub fn options(&self) -> Option<u16> {
         self.behaviours
             .iter()
@@ -251,7 +251,7 @@ impl Program {
             })
     }
 
-    /// The texts of a variable; empty for other kinds.
+    /// The strings of a variable; empty for other kinds.
     pub fn texts(&self, variable: u16) -> &[String] {
         match &self.variables[usize::from(variable)].kind {
             Kind::Text(texts) => texts,
@@ -281,7 +281,7 @@ impl Program {
     /// The active leaf according to the conditions.
     ///
     /// # Panics
-    /// If the last of siblings has a condition, which no checked program has.
+    /// If the last sibling has a condition, which is impossible in a checked program.
     pub fn leaf(&self, values: &impl Values) -> usize {
         let mut within = None;
         loop {
@@ -296,8 +296,7 @@ impl Program {
     }
 }
 
-/// Enums whose variants have names in strategy files, in snake case. Their doc comments are shown
-/// to users.
+/// Enums whose variants have names in strategy files, in snake case. Users see their doc comments.
 pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
     /// All variants, in the order of the documentation.
     fn all() -> &'static [Self] {

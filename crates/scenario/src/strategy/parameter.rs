@@ -16,14 +16,14 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Its value now.
+    /// Its current value.
     pub fn value(&self, values: &impl Values) -> f64 {
         self.expression
             .value(values)
             .clamp(self.range.0, self.range.1)
     }
 
-    /// Its value, if constant.
+    /// Its value, if it is constant.
     pub fn constant(&self) -> Option<f64> {
         self.expression
             .constant()
@@ -31,7 +31,7 @@ impl Parameter {
     }
 }
 
-/// In a file, a number or an expression as text; its range is that of the key.
+/// In a file, a number or an expression as a string; its range is that of the key.
 impl JsonSchema for Parameter {
     fn inline_schema() -> bool {
         true

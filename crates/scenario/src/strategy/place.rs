@@ -27,18 +27,18 @@ pub enum Place {
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mark {
-    /// Home of one's own flag.
+    /// Home of the team's own flag.
     OwnFlag,
     /// Home of the enemy's flag, if the flag is there.
     EnemyFlag,
-    /// Where a flag must be brought.
+    /// Place to which a flag must be brought.
     CapturePlace,
-    /// Where a tagged boat is untagged; the enemy's flag while the boat must first leave that
+    /// Place where a tagged boat is untagged; the enemy's flag while the boat must first leave that
     /// place.
     UntagPlace,
 }
 
-/// A boat by its present role.
+/// A boat by its current role.
 #[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,16 +52,16 @@ pub enum Boat {
     /// Enemy, tagged or not, nearest to the enemy's flag.
     NearestDefender,
     /// Untagged enemy on the team's side assigned to this boat. Starting with the enemy nearest to
-    /// one of the team's flags, each goes to the boat of the team that meets it soonest, one boat
-    /// per enemy.
+    /// one of the team's flags, each is assigned to the boat that meets it soonest, one boat per
+    /// enemy.
     AssignedIntruder,
     /// Enemy that carries one of the team's flags.
     FlagCarrier,
-    /// Enemy of the same rank; ranks repeat if there are fewer enemies.
+    /// Enemy with the same rank; ranks repeat if there are fewer enemies.
     Opponent,
-    /// Nearest mate.
+    /// Nearest teammate.
     NearestMate,
-    /// Mate that carries a flag.
+    /// Teammate that carries a flag.
     MateCarrier,
 }
 
@@ -98,7 +98,7 @@ impl JsonSchema for Place {
         "place".into()
     }
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        // Bound on the distance from the datum, m; no boat goes that far.
+        // Bound on the distance from the datum, m, beyond the reach of any boat.
         let number = json!({ "type": "number", "minimum": -1e6, "maximum": 1e6 });
         let position = json!({
             "description": "[x east, y north] in metres from the datum.",

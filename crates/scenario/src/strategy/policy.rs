@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// Follows a course and speed proposed by a trained model or an external program or person.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Policy {
-    /// The model that proposes; none: an external source proposes.
+    /// The proposing model; `None` means an external source.
     #[serde(default)]
     #[schemars(flatten, with = "ModelKeys")]
     pub model: Option<PolicyModel>,
@@ -22,8 +22,8 @@ pub struct Policy {
     #[serde(default)]
     #[schemars(with = "Option<String>", extend("x-expected" = "the name of a string variable"))]
     pub sets: Option<u16>,
-    /// Whether each action is sampled from the model's probabilities, using the game's seed,
-    /// instead of taking the most likely one. Only for a model with logits.
+    /// Whether to sample each action from the model's probabilities, using the game's seed, not the
+    /// most likely action. Only for models with logits.
     #[serde(default)]
     pub sampled: bool,
     /// Whether the model's actions are the boat's orders, as in Pyquaticus. Modes, rules and other
@@ -51,7 +51,7 @@ pub struct Policy {
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "only the schema is used")]
 struct ModelKeys {
-    /// ONNX file. Default: an external source proposes.
+    /// ONNX file. Default: an external source of proposals.
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a file"))]
     model: Option<String>,
     /// Competition entry in place of a model: its folder or `solution.py`.
@@ -60,7 +60,7 @@ struct ModelKeys {
     /// Python that runs the entry. Default: python3.
     #[schemars(length(min = 1))]
     python: Option<String>,
-    /// Wall-clock limit of an entry's decision, s. Default: 1.
+    /// Wall-clock limit for an entry's decision, s. Default: 1.
     #[schemars(range(min = 0.01, max = 60))]
     limit_s: Option<f64>,
     /// The model's inputs. Default: as in its metadata; for an entry, the game's.
@@ -83,12 +83,13 @@ pub struct Host {
     pub python: String,
     /// Wall-clock time for each decision, s.
     pub limit_s: f64,
-    /// Its observations, of Pyquaticus in 2025 or 2026. `None`: those of the game's year.
+    /// Its observations, those of Pyquaticus in 2025 or 2026. `None` means those of the game's
+    /// year.
     pub observation: Option<ObservationSpace>,
-    /// Time between decisions, s. `None`: the game's.
+    /// Time between decisions, s. `None` means the game's.
     pub period_s: Option<f64>,
     /// Whether this process may run it. A path from another process or a recording never makes this
-    /// one run a program.
+    /// process run a program.
     #[serde(skip)]
     pub is_allowed: bool,
 }
@@ -100,6 +101,6 @@ pub enum Proposer {
     /// A program; lockstep waits for it.
     #[default]
     Program,
-    /// A person at the page; nothing waits.
+    /// A person at the page; lockstep does not wait.
     Person,
 }

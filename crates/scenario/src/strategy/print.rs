@@ -2,7 +2,7 @@
 
 use super::{Expression, Join, Kind, Named, Place, Program};
 
-/// Precedence of an expression's parts, loosest first.
+/// Precedence of an expression's parts, lowest first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Precedence {
     Choice,
@@ -50,7 +50,8 @@ impl Program {
         self.text(expression, kind, Precedence::Choice)
     }
 
-    /// An expression in the place of a value of `kind`; parts looser than `around` need brackets.
+    /// An expression in the place of a value of `kind`; parts with lower precedence than `around`
+    /// need brackets.
     fn text(&self, expression: &Expression, kind: &Kind, around: Precedence) -> String {
         let atom = |text: String| (text, Precedence::Atom);
         let (text, binds) = match expression {
@@ -75,7 +76,7 @@ impl Program {
                 let inner = self.text(inner, &Kind::Truth, Precedence::Sign);
                 (format!("!{inner}"), Precedence::Sign)
             }
-            // Two signs in a row cancel out, and a sign before a digit belongs to it.
+            // Two signs in a row cancel out, and a sign before a digit belongs to the number.
             Expression::Minus(inner) => {
                 (format!("-({})", self.number_text(inner)), Precedence::Sign)
             }

@@ -1,7 +1,7 @@
 //! The tasks of behaviours: one type per kind, with its keys as in files.
 //!
-//! Each key is declared once, here. Its doc comment gives its meaning and unit; `range` and
-//! `length` give the allowed values, `default` the value of an omitted key. The schema of these
+//! Each key is declared once, in this module. Its doc comment gives its meaning and unit; `range`
+//! and `length` give the allowed values, `default` the value of an omitted key. The schema of these
 //! types is used to check files, for completion in editors, and for the reference page.
 
 use super::{Boat, Parameter, Place, Policy};
@@ -65,13 +65,13 @@ pub struct Waypoint {
     /// Speed, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 5))]
     pub speed_m_s: Parameter,
-    /// A point nearer than this is reached, m.
+    /// Distance at which a point is reached, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 3))]
     pub capture_radius_m: Parameter,
-    /// A point within this distance is also reached by passing it, m.
+    /// Distance at which passing a point also reaches it, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub slip_radius_m: Parameter,
-    /// Steers for the point on the leg this far ahead, m; 0: for the next point.
+    /// How far ahead on the leg to steer, m; 0: steer for the next point.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub lead_m: Parameter,
     /// Weight of course against speed.
@@ -91,13 +91,13 @@ pub struct Loiter {
     /// Speed, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 5))]
     pub speed_m_s: Parameter,
-    /// A corner nearer than this is reached, m.
+    /// Distance at which a corner is reached, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 3))]
     pub capture_radius_m: Parameter,
-    /// A corner within this distance is also reached by passing it, m.
+    /// Distance at which passing a corner also reaches it, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub slip_radius_m: Parameter,
-    /// Beyond this distance from the polygon, the boat approaches it first, m.
+    /// Distance from the polygon beyond which the boat first approaches it, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 10))]
     pub acquire_m: Parameter,
 }
@@ -111,7 +111,7 @@ pub enum Shape {
     Ellipse(Ellipse),
 }
 
-/// The keys for a shape: one of them is required.
+/// The keys for a shape, one of which is required.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "only the schema is used")]
 struct ShapeKeys {
@@ -130,7 +130,7 @@ pub enum Turn {
     Clockwise,
     /// Counterclockwise.
     Counterclockwise,
-    /// By the heading on arrival.
+    /// Depends on heading on arrival.
     Best,
 }
 
@@ -155,10 +155,10 @@ pub struct Ellipse {
 pub struct StationKeep {
     /// Station. Default: the position at the start.
     pub at: Option<Place>,
-    /// Within this distance it does nothing, m.
+    /// Distance within which it is inactive, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 4))]
     pub inner_radius_m: Parameter,
-    /// Beyond this distance it drives at transit speed, m.
+    /// Distance beyond which it drives at transit speed, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub outer_radius_m: Parameter,
     /// Speed at the outer radius, falling to 0 at the inner one, m/s.
@@ -169,12 +169,12 @@ pub struct StationKeep {
     pub transit_speed_m_s: Parameter,
 }
 
-/// Closes in on a boat, by rate of closure and closest point of approach (CPA).
+/// Closes in on a boat, weighing rate of closure against closest point of approach (CPA).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CutRange {
     /// Target.
     pub contact: Boat,
-    /// From 0, only rate of closure, to 100, only CPA.
+    /// From 0 (only rate of closure) to 100 (only CPA).
     #[schemars(range(min = 0, max = 100), extend("default" = 50))]
     pub patience: Parameter,
     /// Time horizon of a course, s.
@@ -196,7 +196,7 @@ pub struct Trail {
     /// Direction from the target's bow, degrees clockwise; 180 is astern.
     #[schemars(range(min = -360, max = 360), extend("default" = 180))]
     pub angle_deg: Parameter,
-    /// Within this distance of the position it adopts the target's course and speed, m.
+    /// Distance from the position within which it matches the target's course and speed, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 5))]
     pub radius_m: Parameter,
     /// Maximum speed, m/s.
@@ -225,10 +225,10 @@ pub struct Shield {
     /// Enemy.
     #[schemars(extend("default" = "nearest_attacker"))]
     pub against: Boat,
-    /// Distance from the guarded place towards the enemy, m, at most half-way.
+    /// Distance from the guarded place towards the enemy, at most half-way, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 10))]
     pub distance_m: Parameter,
-    /// Within this distance of its station it adopts the speed of the guarded place, m.
+    /// Distance from its station within which it matches the speed of the guarded place, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 3))]
     pub radius_m: Parameter,
     /// Maximum speed, m/s.
@@ -236,15 +236,15 @@ pub struct Shield {
     pub speed_m_s: Parameter,
 }
 
-/// Attracts the boat to a place, more strongly the nearer it is.
+/// Attracts the boat to a place, more strongly the nearer the place is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Attractor {
     /// Place.
     pub to: Place,
-    /// Distance of full weight, m.
+    /// Distance with full weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 10))]
     pub inner_m: Parameter,
-    /// Distance of zero weight, m.
+    /// Distance with zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 50))]
     pub outer_m: Parameter,
     /// Speed, m/s.
@@ -259,16 +259,16 @@ pub struct AvoidCollision {
     /// Boats to avoid.
     #[schemars(extend("default" = "all"))]
     pub contacts: Contacts,
-    /// Distance of full weight, m.
+    /// Distance with full weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 9))]
     pub inner_m: Parameter,
-    /// Distance of zero weight, m.
+    /// Distance with zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 15))]
     pub outer_m: Parameter,
-    /// CPA of utility one half; less is worse, m.
+    /// CPA with half utility; less is worse, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 3))]
     pub cpa_min_m: Parameter,
-    /// CPA of full utility, m.
+    /// CPA with full utility, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 6))]
     pub cpa_max_m: Parameter,
     /// Time horizon of a course, s.
@@ -277,19 +277,19 @@ pub struct AvoidCollision {
     /// How the weight falls between the two distances.
     #[schemars(extend("default" = "linear"))]
     pub grade: Grade,
-    /// The boat stops while another is nearer than this, m. Default: never.
+    /// Distance to another boat at which the boat stops, m. Default: never.
     #[schemars(range(min = 0.1, max = 1000))]
     pub halt_m: Option<Parameter>,
-    /// It resumes when all boats are farther than this, m. Default: 3 × `halt_m`.
+    /// Distance to all boats beyond which it resumes, m. Default: 3 × `halt_m`.
     #[schemars(range(min = 0, max = 1000))]
     pub release_m: Option<Parameter>,
-    /// It also resumes after this time, and stops again only once it has been clear of other boats,
-    /// s. Default: never.
+    /// Time after which it also resumes, s; it stops again only after being clear of others.
+    /// Default: never.
     #[schemars(range(min = 0.1, max = 86_400))]
     pub release_s: Option<Parameter>,
 }
 
-/// Which boats a behaviour considers.
+/// The boats that a behaviour considers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Contacts {
@@ -301,9 +301,10 @@ pub enum Contacts {
     Taggers,
     /// The enemy assigned to this boat.
     Opponent,
-    /// Mates.
+    /// Teammates.
     Mates,
-    /// Boats without a possible tag: mates, tagged enemies, and all while this boat is tagged.
+    /// Boats with which no tag is possible: teammates, tagged enemies, all while this boat is
+    /// tagged.
     NoTag,
 }
 
@@ -323,16 +324,16 @@ pub enum Grade {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("x-weight" = 300))]
 pub struct AvoidObstacle {
-    /// Distance of full weight, m.
+    /// Distance with full weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 4))]
     pub inner_m: Parameter,
-    /// Distance of zero weight, m.
+    /// Distance with zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 15))]
     pub outer_m: Parameter,
-    /// Passing distance of utility one half; less is worse, m.
+    /// Passing distance with half utility; less is worse, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 1))]
     pub cpa_min_m: Parameter,
-    /// Passing distance of full utility, m.
+    /// Passing distance with full utility, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 4))]
     pub cpa_max_m: Parameter,
     /// Time horizon of a course, s.
@@ -340,14 +341,14 @@ pub struct AvoidObstacle {
     pub time_on_leg_s: Parameter,
 }
 
-/// Keeps the boat on the field; brings it back slowly.
+/// Keeps the boat on the field, and brings it back slowly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("x-weight" = 300))]
 pub struct OpRegion {
-    /// The region is the field shrunk by this, m; negative values enlarge it.
+    /// Margin inside the field's edges, m; negative values enlarge the region.
     #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub margin_m: Parameter,
-    /// Inside, within this distance of the edge, it turns away from courses that lead out, m.
+    /// Distance inside the edge within which it turns away from courses that lead out, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 6))]
     pub save_m: Parameter,
     /// Distance outside beyond which `beyond_halt` applies, m.
@@ -356,16 +357,16 @@ pub struct OpRegion {
     /// Action beyond `halt_m`.
     #[schemars(extend("default" = "comes_back"))]
     pub beyond_halt: BeyondHalt,
-    /// Time outside before the boat counts as out, s.
+    /// Time outside before the boat counts as outside, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 1))]
     pub exit_s: Parameter,
-    /// Time inside before it counts as in, s.
+    /// Time inside before it counts as inside, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 1))]
     pub entry_s: Parameter,
     /// Speed on the way back, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 0.5))]
     pub recovery_speed_m_s: Parameter,
-    /// It turns away from courses that lead out sooner than this, s.
+    /// Look-ahead time for avoiding courses that lead out, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 6))]
     pub lookahead_s: Parameter,
 }
@@ -386,13 +387,13 @@ pub struct MaxSpeed {
     /// Maximum speed, m/s.
     #[schemars(range(min = 0, max = 60))]
     pub speed_m_s: Parameter,
-    /// Excess speed of utility 0, m/s.
+    /// Excess speed with zero utility, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 0.5))]
     pub tolerance_m_s: Parameter,
-    /// Applies to boats closer than this, m; 0: always.
+    /// Distance to a boat within which the limit applies, m; 0: always.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 20))]
     pub range_m: Parameter,
-    /// Only for boats within this angle of the bow, to either side, degrees.
+    /// Angle from the bow, to either side, within which boats count, degrees.
     #[schemars(range(min = 0, max = 180), extend("default" = 55))]
     pub angle_deg: Parameter,
     /// Boats to consider.
@@ -431,7 +432,7 @@ pub struct ConstantSpeed {
 /// Discourages turns away from the recent mean heading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MemoryTurnLimit {
-    /// Duration of the mean, s.
+    /// Averaging time, s.
     #[schemars(range(min = 0.1, max = 600), extend("default" = 20))]
     pub memory_s: Parameter,
     /// Turn without penalty, degrees to either side.

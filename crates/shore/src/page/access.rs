@@ -1,7 +1,7 @@
 //! Access control of the page: accepted host names and origins, and the tokens for actions.
 //!
-//! Another web page that is open on this machine can send requests here too: to the address, or to
-//! a name that resolves to it. `Host` and `Origin` reveal that, because browsers set them and pages
+//! Other web pages open on this machine can also send requests to this server, by its address or a
+//! name that resolves to it. `Host` and `Origin` reveal this, because browsers set them and pages
 //! cannot.
 
 use super::view::Access;
@@ -19,7 +19,7 @@ pub(super) struct AccessControl {
 pub(super) struct Tokens {
     /// The token to control the game; `None` permits every page.
     pub(super) control: Option<String>,
-    /// The token to operate real boats. Other users of this machine need it too.
+    /// The token to operate real boats. Other users of this machine need it, too.
     pub(super) operate: String,
 }
 
@@ -59,14 +59,14 @@ impl AccessControl {
 
     fn is_own(&self, name: &str) -> bool {
         match name.parse::<IpAddr>() {
-            // If the server listens on all addresses, any address will do: attackers control only
+            // If the server listens on all addresses, accept any address: attackers control only
             // names.
             Ok(ip) => ip.is_loopback() || ip == self.bound.ip() || self.bound.ip().is_unspecified(),
             Err(_) => name == "localhost",
         }
     }
 
-    /// Checks that our own page opens the WebSocket, or a client other than a browser.
+    /// Checks that the WebSocket is opened by our own page, or by a client other than a browser.
     ///
     /// # Errors
     /// The reason.
@@ -81,7 +81,7 @@ impl AccessControl {
         }
     }
 
-    /// The access that a page's address grants by its query.
+    /// The access that the query in a page's address grants.
     pub(super) fn access(&self, query: Option<&str>) -> Access {
         let shown = value(query, "token");
         let is_shown = |token: &String| {
@@ -145,7 +145,7 @@ mod tests {
         AccessControl::new(bound.parse().expect("an address"), &hosts, tokens)
     }
 
-    /// The cases of one check in `access_cases.csv`: its other two columns, where `none` means
+    /// The cases of one check in `access_cases.csv`: the other two columns, where `none` means
     /// absent, and the expected result.
     fn cases(check: &str) -> Vec<([Option<String>; 2], bool)> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/access_cases.csv");

@@ -8,7 +8,7 @@ use include_dir::{Dir, include_dir};
 static WEB: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/web");
 
 /// Headers of every response. The page uses only its own files and its own server. It cannot be
-/// framed, because another page could then redirect clicks to it.
+/// framed, because a page that frames it could redirect clicks to it.
 const HEADERS: [(HeaderName, &str); 5] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -35,7 +35,7 @@ pub(super) fn answer(path: &str) -> Response<Body> {
     }
 }
 
-/// A response with this file.
+/// A response with the given file.
 pub(super) fn own(name: &str, contents: Body) -> Response<Body> {
     plain(StatusCode::OK, kind(name), contents)
 }

@@ -12,9 +12,9 @@ use thiserror::Error;
 
 /// Maximum size of a file, bytes.
 const BYTES_MAX: u64 = 16 << 20;
-/// Maximum size of a world file, bytes; it holds six numbers.
+/// Maximum size of a world file, bytes; it contains six numbers.
 const WORLD_BYTES_MAX: u64 = 4096;
-/// Maximum length of an image's sides, pixels; browsers draw none larger.
+/// Maximum length of an image's sides, pixels; browsers do not draw larger images.
 const SIDE_MAX: usize = 8192;
 /// Maximum number of positions in a shoreline.
 const POSITIONS_MAX: usize = 200_000;
@@ -34,7 +34,7 @@ pub struct Background {
     pub(super) image: Option<(&'static str, Vec<u8>)>,
 }
 
-/// Why a background is rejected: the file and its problem, with the values allowed.
+/// Why a background is rejected: the file and its problem, with the allowed values.
 #[derive(Debug, Error)]
 #[error("{0}")]
 pub struct BackgroundError(String);
@@ -220,7 +220,7 @@ impl Shoreline {
         Ok(shoreline)
     }
 
-    /// Files from before RFC 7946 may use another reference system.
+    /// Files from before RFC 7946 may use a different reference system.
     fn check_reference_system(&self, value: &Value) -> Result<(), String> {
         let Some(name) = value["crs"]["properties"]["name"].as_str() else {
             return Ok(());
@@ -327,7 +327,7 @@ fn list<'a>(value: &'a Value, at: &str) -> Result<&'a Vec<Value>, String> {
         .ok_or_else(|| format!("{at} is not a list"))
 }
 
-/// Calls `take` with every item of a list and its place.
+/// Calls `take` with every item of a list, and its place.
 fn each<C: FromIterator<T>, T>(
     value: &Value,
     at: &str,

@@ -32,13 +32,13 @@ pub(super) struct BoatCurves {
     pub(super) ordered_speed_m_s: Vec<f64>,
     pub(super) heading_deg: Vec<f64>,
     pub(super) ordered_heading_deg: Vec<f64>,
-    /// Over the ground.
+    /// Course over the ground.
     pub(super) course_deg: Vec<f64>,
     pub(super) sway_m_s: Vec<f64>,
     pub(super) yaw_rate_deg_s: Vec<f64>,
     pub(super) port_newton: Vec<f64>,
     pub(super) starboard_newton: Vec<f64>,
-    /// Distance to the nearest flag of another team, wherever that flag is.
+    /// Distance to the nearest flag of the other team, wherever that flag is.
     pub(super) flag_m: Vec<f64>,
     /// Error of its own position estimate.
     pub(super) error_m: Vec<f64>,
@@ -138,7 +138,7 @@ pub(super) enum PageMessage<'a> {
     },
 }
 
-/// What a page shows.
+/// The type of content that a page shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
@@ -167,14 +167,14 @@ impl<'a> EventMessage<'a> {
     }
 }
 
-/// A time in seconds, rounded: 120 instead of 120.00000000000001, the result of multiplying by
-/// 1e-9.
+/// A time in seconds, rounded: 120 instead of 120.00000000000001, which multiplication by 1e-9
+/// would yield.
 pub(super) fn seconds(time: SimTime) -> f64 {
     time.0 as f64 / 1e9
 }
 
 impl PageMessage<'_> {
-    /// The first message to a page: the game, and optionally a sentence about its origin.
+    /// The first message to a page: the game and, optionally, a sentence about its origin.
     pub(super) fn hello<'a>(
         version: &'a str,
         mode: Mode,

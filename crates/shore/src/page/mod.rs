@@ -1,9 +1,9 @@
 //! The page: a web server that shows a running game or a recording in browsers.
 //!
-//! [`Page`] serves the files of the page and talks to each browser as defined in `PROTOCOL.md`. It
-//! shows a [`View`]: `live::LiveView` or [`replay::ReplayView`]. Each page has its own [`Viewer`],
-//! which supplies the next message whenever the page can take one. A slow page therefore gets fewer
-//! frames and delays no other.
+//! [`Page`] serves the files of the page and communicates with each browser as defined in
+//! `PROTOCOL.md`. It shows a [`View`]: `live::LiveView` or [`replay::ReplayView`]. Each page has
+//! its own [`Viewer`], which supplies the next message whenever the page can accept one. A slow
+//! page therefore gets fewer frames and does not delay others.
 
 mod access;
 mod asset;
@@ -47,8 +47,8 @@ pub struct PageSettings {
     pub listen: SocketAddr,
     /// The token that pages need for actions. `None` permits every page.
     pub token: Option<String>,
-    /// Additional host names of the server. They require a token, because their users come from
-    /// other machines.
+    /// Additional host names of the server. They require a token, because their users are on other
+    /// machines.
     pub hosts: Vec<String>,
     /// The background drawn beneath the field.
     pub background: Option<Background>,
@@ -56,16 +56,16 @@ pub struct PageSettings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// Why a page cannot be served.
+/// A reason why a page cannot be served.
 #[derive(Debug, Error)]
 pub enum PageError {
-    /// Every machine on the network could act.
+    /// Any machine on the network could act.
     #[error(
         "the page would be open to the network at {0}: listen on a loopback address such as 127.0.0.1, or require a \
          token for actions (--page-token-file)"
     )]
     Open(SocketAddr),
-    /// Every user of the name could act: a proxy in front of a loopback address may admit anyone.
+    /// Anyone who uses the name could act: a proxy in front of a loopback address may admit anyone.
     #[error(
         "the page would be open to everyone who reaches it as {0:?} (--host): require a token for actions \
          (--page-token-file)"
@@ -91,7 +91,7 @@ pub enum PageError {
 pub struct Page {
     /// The address on which it listens.
     pub address: SocketAddr,
-    /// The token that pages need to operate real boats: the configured or a generated one.
+    /// The token that pages need to operate real boats: the configured token or a generated one.
     pub operator_token: String,
     shown: Option<watch::Sender<Option<Arc<dyn View>>>>,
     report: LateReport,
@@ -101,9 +101,9 @@ pub struct Page {
 
 /// Hexadecimal digits of a generated token: 128 bits.
 const OPERATOR_TOKEN_DIGITS: usize = 32;
-/// Interval of checks whether the server should stop.
+/// Interval between checks whether the server should stop.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
-/// How long pages have to receive the close message.
+/// Time limit for pages to receive the close message.
 const GOODBYE: Duration = Duration::from_millis(200);
 
 impl Page {
@@ -115,7 +115,7 @@ impl Page {
         listener(settings).map(drop)
     }
 
-    /// Listens and serves pages, still without a view.
+    /// Listens and serves pages, initially without a view.
     ///
     /// # Errors
     /// [`PageError`] if it cannot or must not listen on the address.
@@ -128,7 +128,7 @@ impl Page {
             stop,
             ..
         } = settings;
-        // One thread besides the game's: a page must never take a processor from the game.
+        // Use one thread besides the game's: a page must never take a processor from the game.
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .build()
@@ -180,7 +180,7 @@ impl Page {
         self.report.get_or_init(|| report);
     }
 
-    /// Shows this view on all pages from now on.
+    /// Shows the given view on all pages from now on.
     pub fn show(&self, show: Arc<dyn View>) {
         if let Some(shown) = &self.shown {
             shown.send_replace(Some(show));
@@ -200,8 +200,8 @@ fn listener(
     if token.as_ref().is_some_and(String::is_empty) {
         return Err(PageError::EmptyToken);
     }
-    // Watching is free, acting is not. TLS is left to a proxy: no one maintains certificates for a
-    // laptop on a dock.
+    // Watching requires no token, acting does. TLS is left to a proxy: no one maintains
+    // certificates for a laptop on a dock.
     if !listen.ip().is_loopback() && token.is_none() {
         return Err(PageError::Open(*listen));
     }

@@ -1,4 +1,4 @@
-//! A view until a game is available: the progress, or the reason for a failure.
+//! The view until a game is available: progress, or the reason for a failure.
 
 use super::message::{Mode, PageMessage};
 use super::request::PageRequest;
@@ -7,7 +7,7 @@ use parking_lot::Mutex;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A text in place of a game.
+/// A message in place of a game.
 pub struct PreparingView {
     said: Arc<Mutex<Said>>,
     news: Changes,
@@ -40,7 +40,7 @@ impl PreparingView {
         }
     }
 
-    /// Replaces the text.
+    /// Replaces the message.
     pub fn tell(&self, text: &str) {
         text.clone_into(&mut self.said.lock().text);
         self.news.send_replace(());

@@ -6,11 +6,11 @@ use tokio::sync::watch;
 
 /// A summary of many games: a tournament, a sweep or a training run.
 pub trait Report: Send + Sync {
-    /// The report's own file at this path, such as `/report.json`, if any. May take some time.
+    /// The report's own file at a path such as `/report.json`, if any. May take some time.
     fn file(&self, path: &str) -> Option<Vec<u8>>;
 
-    /// The view of a game. `name` may be any text; for an unknown game the view shows why there is
-    /// none.
+    /// The view of a game. `name` may be any string; for an unknown game, the view gives the reason
+    /// for its absence.
     fn game(&self, name: &str) -> Shown;
 }
 
@@ -26,7 +26,7 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// The default view of all pages.
+    /// The default view for all pages.
     pub(super) fn to_all(receiver: watch::Receiver<Option<Arc<dyn View>>>) -> Shown {
         Shown {
             receiver,
@@ -35,7 +35,7 @@ impl Shown {
     }
 }
 
-/// The view of all pages that open one game. It can change.
+/// The view for all pages that open one game. It can change.
 pub struct Showing(watch::Sender<Option<Arc<dyn View>>>);
 
 impl Showing {
@@ -44,7 +44,7 @@ impl Showing {
         Arc::new(Showing(watch::Sender::new(Some(first))))
     }
 
-    /// Shows another view from now on.
+    /// Shows a different view from now on.
     pub fn show(&self, next: Arc<dyn View>) {
         self.0.send_replace(Some(next));
     }
@@ -57,7 +57,7 @@ impl Showing {
         }
     }
 
-    /// Whether any page shows it.
+    /// Whether any page shows this view.
     pub fn is_watched(&self) -> bool {
         self.0.receiver_count() > 0
     }

@@ -28,7 +28,7 @@ pub enum PageRequest {
     },
     /// Requests the score over time and a boat's curves; recordings only.
     Curves {
-        /// The vehicle's name. None: only the score.
+        /// The vehicle's name. `None` means only the score.
         vehicle: Option<String>,
     },
     /// Plays futures of a recording.
@@ -43,7 +43,7 @@ pub enum PageRequest {
     },
     /// Sets the speed, simulated seconds per second.
     Speed {
-        /// None: unlimited.
+        /// `None` means unlimited.
         factor: Option<f64>,
     },
     /// Steps by a number of decisions.
@@ -51,7 +51,7 @@ pub enum PageRequest {
         /// Negative values step back.
         by: i64,
     },
-    /// Goes to another time.
+    /// Jumps to a different time.
     Seek {
         /// Simulated time, s.
         t_s: f64,
@@ -81,7 +81,7 @@ pub enum PageRequest {
     Mission {
         /// The vehicle's name.
         vehicle: String,
-        /// The text of a mission file.
+        /// The contents of a mission file.
         lines: String,
     },
 }
@@ -124,7 +124,7 @@ impl PageRequest {
             | PageRequest::Speed { .. }
             | PageRequest::Drive { .. }
             | PageRequest::LetGo { .. } => Access::Control,
-            // As at the gateway: a page that may stop all boats may stop one.
+            // As at the gateway: a page that may stop all boats may also stop one.
             PageRequest::Operate { command, .. } if !command.needs_token() => Access::Control,
             PageRequest::Operate { .. } | PageRequest::Mission { .. } => Access::Operate,
         }

@@ -1,4 +1,4 @@
-//! The rose: a helm's evaluation as the page draws it, with utilities as whole percentages.
+//! The rose: a helm's evaluation as drawn on the page, with utilities as whole percentages.
 
 use super::message::PageMessage;
 use messages::helm::{BehaviourReport, HelmReport, PolicyReport, VariableReport};
@@ -121,7 +121,7 @@ pub struct HelmAnswer {
     pub report: Option<HelmReport>,
     /// Why there is no report.
     pub reason: Option<String>,
-    /// Whether it was recomputed rather than received from the helm.
+    /// Whether the report was recomputed rather than received from the helm.
     pub computed: bool,
     /// Whether the recomputed order equals the recorded one.
     pub agrees: Option<bool>,
@@ -166,7 +166,7 @@ pub(super) fn helm_text(
     .json()
 }
 
-/// Whether a report is consistent and about this vehicle. Replies from agents are not trusted.
+/// Whether a report is consistent and refers to this vehicle. Replies from agents are not trusted.
 pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> bool {
     let is_grid = (1..=3600).contains(&report.courses)
         && (2..=1000).contains(&report.speeds)
@@ -183,8 +183,8 @@ pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> boo
         })
 }
 
-/// The weighted sum of all functions, scaled from its minimum to its maximum. `None` without
-/// functions.
+/// The weighted sum of all functions, scaled so that its minimum is 0 and its maximum 100. `None`
+/// without functions.
 fn collective(report: &HelmReport) -> Option<Vec<u8>> {
     report
         .functions
@@ -197,7 +197,7 @@ fn collective(report: &HelmReport) -> Option<Vec<u8>> {
             (least.min(*sum), most.max(*sum))
         });
     let range = greatest - least;
-    // If all courses have the same value, none is worse.
+    // If all courses have the same value, none is worse than the others.
     let share = |sum: &f64| {
         if range > 0.0 {
             whole((sum - least) / range * 100.0)

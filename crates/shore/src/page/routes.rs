@@ -30,13 +30,14 @@ use tokio_io_timeout::TimeoutStream;
 
 /// Maximum number of pages without a token.
 const PAGES_MAX: usize = 64;
-/// Maximum number of operators' pages; others cannot take their slots.
+/// Maximum number of operators' pages; other pages cannot take their slots.
 const OPERATORS_MAX: usize = 8;
 /// Maximum number of connections that are not WebSockets yet.
 const CONNECTIONS_MAX: usize = 192;
-/// A connection that receives nothing for this long is closed. WebSockets are pinged more often.
+/// Time without received bytes after which a connection is closed. WebSockets are pinged more
+/// often.
 const SILENCE: Duration = Duration::from_secs(60);
-/// A connection with bytes to send that accepts none for this long is closed.
+/// Time after which a connection that accepts no bytes is closed.
 const DEAF: Duration = Duration::from_secs(20);
 /// Wait after a failed accept.
 const AGAIN: Duration = Duration::from_millis(200);
@@ -55,7 +56,7 @@ struct AppState {
 }
 
 impl AppState {
-    /// Runs `get` on the report in a thread that may block. `None` without a report.
+    /// Calls `get` on the report in a thread that may block. `None` without a report.
     async fn of_report<T: Send + 'static>(
         &self,
         get: impl FnOnce(&dyn Report) -> T + Send + 'static,
@@ -84,7 +85,7 @@ impl AppState {
     }
 }
 
-/// A slot for a connection, and a signal that another one needs it.
+/// A slot for a connection, and a signal that a different connection needs it.
 pub(super) type Room = (Slot, oneshot::Receiver<()>);
 
 fn admit(connections: &Connections, from: IpAddr) -> Room {
@@ -110,7 +111,7 @@ pub(super) async fn serve(
         background: background.map(Arc::new),
         viewers: Connections::new(PAGES_MAX),
         // Operators have separate slots: an E-stop must not queue behind observers. With too many
-        // pages, none is refused. The longest-idle page is displaced and reconnects after half a
+        // pages, none is refused: the longest-idle page is displaced and reconnects after half a
         // minute, so that one page too many does not make all of them reconnect.
         operators: Connections::new(OPERATORS_MAX),
     };
@@ -130,9 +131,9 @@ pub(super) async fn serve(
             let served = serve_connection(stream, site.clone(), slot, from.ip());
             tokio::spawn(async move {
                 tokio::select! {
-                    // An error ends only one browser's connection.
+                    // An error ends only the connection of one browser.
                     ended = served => drop(ended),
-                    // Another connection needs the slot; an error means that the slot is free
+                    // A different connection needs the slot; an error means that the slot is free
                     // again.
                     Ok(()) = closed => {}
                 }
@@ -153,7 +154,7 @@ async fn serve_connection(
     slot: Slot,
     from: IpAddr,
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-    // A frame is one small write; waiting for more only delays it.
+    // A frame is one small write; buffering would only delay it.
     drop(stream.set_nodelay(true));
     let mut stream = TimeoutStream::new(stream);
     stream.set_read_timeout(Some(SILENCE));
@@ -266,7 +267,7 @@ async fn upgrade(
     upgrade.on_upgrade(move |socket| socket::serve(socket, game.unwrap_or(app.shown), access, room))
 }
 
-/// A header as text. One that is not text counts as wrong.
+/// A header as a string. A header that is not a string counts as wrong.
 fn text_of<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     headers.get(name).map(|value| value.to_str().unwrap_or("?"))
 }

@@ -8,11 +8,11 @@ use std::time::Instant;
 
 /// Maximum number of frames sent and not yet drawn.
 const UNDRAWN_MAX: u8 = 2;
-/// After this much text, bytes, a ping checks that it has arrived. The page acknowledges drawn
-/// frames, but not text.
+/// Amount of text (bytes) after which a ping checks that it has arrived. The page acknowledges
+/// drawn frames, but not text.
 const UNCONFIRMED_MAX: usize = 4096;
-/// Maximum number of queued refusals. A page that sends bad requests faster than it reads misses
-/// some.
+/// Maximum number of queued refusals. A page that sends bad requests faster than it reads replies
+/// misses some.
 const REFUSALS_MAX: usize = 8;
 
 /// The session with one page.
@@ -23,7 +23,7 @@ pub struct PageSession {
     undrawn: u8,
     /// Text sent since the last ping, bytes.
     unconfirmed: usize,
-    /// The last ping sent, and the last one returned.
+    /// The last ping sent, and the last pong received.
     pings: (u64, u64),
     /// Refusals to send: the request and the reason.
     refusals: VecDeque<(String, String)>,
@@ -100,14 +100,13 @@ impl PageSession {
         outgoing
     }
 
-    /// The page's free capacity. Limits the frames and text in flight, so that they do not arrive
-    /// late.
+    /// The page's free capacity. Limits the frames and text in flight, so that none arrives late.
     fn budget(&self) -> Budget {
         let (made, back) = self.pings;
         match self.undrawn < UNDRAWN_MAX {
             false => Budget::None,
-            // Messages that can wait (helms) wait for space on the connection: an E-stop must not
-            // queue behind pictures.
+            // Messages that can wait, such as helm reports, wait for space on the connection: an
+            // E-stop must not queue behind pictures.
             true if back < made || self.unconfirmed >= UNCONFIRMED_MAX => Budget::Frames,
             true => Budget::All,
         }
@@ -132,7 +131,7 @@ impl PageSession {
         self.pings.1 = back.max(ping.min(made));
     }
 
-    /// When the next message is due without further events.
+    /// When the next message is due if nothing else happens.
     pub(super) fn due(&self, now: Instant) -> Option<Instant> {
         self.viewer.due(now)
     }
@@ -201,7 +200,7 @@ mod tests {
         session.receive(r#"{"do":"ack"}"#, now);
         assert_eq!(session.next_message(now), Some(Outgoing::now(&[3])));
         assert_eq!(session.next_message(now), None);
-        // A page that acknowledges more frames than it received gets no more than two.
+        // A page that acknowledges more frames than it has received gets no more than two.
         (0..9).for_each(|_| session.receive(r#"{"do":"ack"}"#, now));
         assert_eq!(
             std::iter::from_fn(|| session.next_message(now))

@@ -14,20 +14,20 @@ use tokio::time::{Instant, sleep_until, timeout};
 
 /// Maximum size of a message from a page, bytes.
 pub(super) const RECEIVED_MAX: usize = 16 * 1024;
-/// Timeout of the close message.
+/// Timeout for the close message.
 const CLOSE_LIMIT: Duration = Duration::from_millis(100);
-/// Interval of pings.
+/// Interval between pings.
 const PING: Duration = Duration::from_secs(15);
-/// A page silent for this long is disconnected.
+/// Silence after which a page is disconnected.
 const DEAD: Duration = Duration::from_secs(45);
-/// Minimum interval of messages: a game at full speed changes more often than a page can draw.
+/// Minimum interval between messages: a game at full speed changes more often than a page can draw.
 const MIN_INTERVAL: Duration = Duration::from_millis(4);
 
 enum End {
     Gone,
-    /// The server closes.
+    /// The server is closing.
     Closed,
-    /// Another page needs the slot.
+    /// A different page needs the slot.
     Displaced,
 }
 
@@ -45,7 +45,8 @@ struct Incoming {
     last_received: std::time::Instant,
 }
 
-/// Talks to a page until the page leaves, the server closes, or another page needs the slot.
+/// Communicates with a page until it disconnects, the server closes, or a different page needs the
+/// slot.
 pub(super) async fn serve(
     socket: WebSocket,
     shown: Shown,
@@ -157,9 +158,9 @@ impl Socket {
 
     /// Sends a message. While a page is slow to accept it, no other messages queue up; the next one
     /// is created afterwards. Messages from the page are still received, because one may be an
-    /// E-stop. A connection that accepts nothing at all times out.
+    /// E-stop. A connection that accepts no bytes times out.
     async fn send(&mut self, message: Message, session: &mut PageSession) -> Result<(), End> {
-        // It is sent completely, because a partial message cannot be withdrawn.
+        // Send it completely, because a partial message cannot be withdrawn.
         let mut sending = pin!(self.sink.send(message));
         loop {
             tokio::select! {

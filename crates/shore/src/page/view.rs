@@ -6,13 +6,13 @@ use axum::body::Bytes;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// Interval of messages with continuously changing values.
+/// Interval between messages with continuously changing values.
 pub(super) const SEND_INTERVAL: Duration = Duration::from_millis(200);
-/// Interval of helm reports to a page.
+/// Interval between helm reports to a page.
 pub(super) const HELM_INTERVAL: Duration = Duration::from_millis(100);
-/// Interval of all boats' modes to a page.
+/// Interval between updates of all boats' modes.
 pub(super) const MODES_INTERVAL: Duration = Duration::from_secs(1);
-/// Interval of a boat's estimated position to a page.
+/// Interval between estimated positions of a boat.
 pub(super) const ESTIMATE_INTERVAL: Duration = Duration::from_millis(100);
 /// Time between past frames for trails, simulated s.
 pub(super) const TRAIL_STEP_S: f64 = 0.5;
@@ -27,12 +27,12 @@ pub trait View: Send + Sync {
     fn news(&self) -> &Changes;
 }
 
-/// The access of a page. Each level includes those before it.
+/// The access of a page. Each level includes the previous ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Access {
     /// Watch only.
     Watch,
-    /// Control the game: pause it, stop its boats, steer those that people may steer.
+    /// Control the game: pause it, stop its boats, and steer boats that people may steer.
     Control,
     /// Operate real boats: arm them and give them tasks.
     Operate,
@@ -46,13 +46,13 @@ pub trait Viewer: Send {
     /// Handles a request that the page's access permits.
     ///
     /// # Errors
-    /// Why the request is refused.
+    /// The reason if the request is refused.
     fn ask(&mut self, ask: &PageRequest, now: Instant) -> Result<(), String>;
 
-    /// The next message, if any; replaceable messages only within the budget.
+    /// The next message, if any; replaceable messages only if the budget allows them.
     fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing>;
 
-    /// When the next message is due without further events.
+    /// When the next message is due if nothing else happens.
     fn due(&self, now: Instant) -> Option<Instant>;
 }
 
@@ -79,12 +79,12 @@ pub enum Outgoing {
 }
 
 impl Outgoing {
-    /// Marks the CDR of a past frame.
+    /// Adds the byte that marks a past frame to its CDR.
     pub fn past(cdr: &[u8]) -> Outgoing {
         Outgoing::Past(marked(2, cdr))
     }
 
-    /// Marks the CDR of a current frame.
+    /// Adds the byte that marks a current frame to its CDR.
     pub fn now(cdr: &[u8]) -> Outgoing {
         Outgoing::Now(marked(1, cdr))
     }

@@ -1,4 +1,4 @@
-//! Searches for the parameters that fit a log best, and estimates their uncertainty.
+//! Searches for the parameters that best fit a log, and estimates their uncertainty.
 
 use super::log::{CHANNELS, Log, Unit};
 use super::parameter::{Knob, PARAMETERS, Parameter};
@@ -19,7 +19,8 @@ pub struct Estimate {
     pub before: f64,
     /// Its fitted value.
     pub value: f64,
-    /// Half-width of the 95 % confidence interval, if the model is right and the noise white.
+    /// Half-width of the 95 % confidence interval, provided that the model is right and the noise
+    /// white.
     pub plus_minus: f64,
 }
 
@@ -36,7 +37,7 @@ pub struct Quality {
     pub r_squared: f64,
 }
 
-/// Two parameters that the log does not separate.
+/// Two parameters that the log cannot separate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Confused {
     /// Their names.
@@ -65,16 +66,16 @@ pub struct Fit {
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoFit {
-    /// An unknown parameter name.
+    /// A parameter name is unknown.
     #[error("{0} is not a parameter, expected one or more of {list}", list = names().join(", "))]
     Unknown(String),
     /// The boat has no such parameter.
     #[error("the boat has no {0}")]
     NotThere(&'static str),
-    /// No parameters to fit.
+    /// There are no parameters to fit.
     #[error("no parameters to fit")]
     Nothing,
-    /// No row at which a segment could begin.
+    /// There is no row at which a segment could begin.
     #[error("no row of the log has a value for every measured channel")]
     NoStart,
     /// The search did not converge.
@@ -85,14 +86,14 @@ pub enum NoFit {
     Undetermined(String),
 }
 
-/// A correlation beyond this is worth a warning.
+/// Correlation above which a warning is given.
 const CONFUSED: f64 = 0.95;
-/// 97.5 % of a normal distribution lie below this many standard deviations.
+/// Number of standard deviations below which 97.5 % of a normal distribution lie.
 const NORMAL_975: f64 = 1.96;
 /// Number of searches, each with channel weights from the previous residuals.
 const WEIGHINGS: usize = 3;
-/// Minimum standard deviation of a channel, as a fraction of the initial guess: a log without noise
-/// comes from a simulation.
+/// Minimum standard deviation of a channel, as a fraction of the initial guess, because a log from
+/// a simulation has no noise.
 const LEAST_SIGMA: f64 = 1e-4;
 
 /// The names of all parameters.
@@ -100,8 +101,8 @@ pub fn names() -> Vec<&'static str> {
     PARAMETERS.iter().map(|parameter| parameter.name).collect()
 }
 
-/// The parameters with these names; if none are named, the default ones with a non-zero value in
-/// the boat's file.
+/// The parameters with these names; without names, the default parameters that have a non-zero
+/// value in the boat's file.
 ///
 /// # Errors
 /// [`NoFit`] for an unknown name.
@@ -132,15 +133,15 @@ pub struct Step {
     pub searches: usize,
     /// Number of the current search, from 1.
     pub search: usize,
-    /// Root mean square of the residuals, in standard deviations of the channels. None if the boat
-    /// cannot be simulated.
+    /// Root mean square of the residuals, in standard deviations of the channels. `None` if the
+    /// boat cannot be simulated.
     pub rms: Option<f64>,
 }
 
 /// Fits `parameters` of `boat` to a log, and reports every step.
 ///
 /// # Errors
-/// [`NoFit`] gives the reason.
+/// The reason, as a [`NoFit`].
 pub fn fit(
     boat: &Boat,
     log: &Log,
@@ -203,7 +204,7 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let deviation = |i: usize| covariance[(i, i)].sqrt();
     let estimate = |(i, knob): (usize, &Knob)| {
         let value = knob.value(at[i]);
-        // The search varies the logarithm: d value = value d log.
+        // The search varies the logarithm, so d value = value d log.
         Estimate {
             parameter: knob.parameter,
             before: knob.before,

@@ -1,4 +1,4 @@
-//! A log of a boat: its commands and measurements.
+//! A log of a boat: its commands and its measurements.
 
 use crate::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 use primitives::SimTime;
@@ -24,7 +24,7 @@ pub(super) const YAW_RATE: usize = 5;
 /// The unit of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
-    /// SI already.
+    /// Already in SI.
     Plain,
     /// Degrees, or degrees per second.
     Degrees,
@@ -39,13 +39,13 @@ pub struct Log {
     pub(super) orders: Orders,
 }
 
-/// Least number of rows for a fit.
+/// Minimum number of rows for a fit.
 const ROWS_MIN: usize = 20;
 
 impl Log {
     /// Reads a log from a sheet: `t_s`, commands for the thrusters, and at least the trial columns
     /// `heading_deg`, `surge_m_s` and `yaw_rate_deg_s`. An empty cell, NaN or N/A is a missing
-    /// measurement. Times count from the first row.
+    /// measurement. Times are relative to the first row.
     ///
     /// # Errors
     /// If columns are missing or a cell is not a number.
@@ -99,8 +99,8 @@ impl Log {
         })
     }
 
-    /// The first rows of segments: the first row at least `segment` after the last one with all
-    /// measurements that a start needs. The last entry is the end of the last segment.
+    /// The first rows of segments: each is the first row at least `segment` after the previous one
+    /// that has all measurements needed for a start. The last entry is the end of the last segment.
     pub(super) fn segments(&self, segment: SimTime) -> Vec<usize> {
         let has_sway = self.measured.iter().any(|cells| cells[SWAY].is_finite());
         let has_place = self.measured.iter().any(|cells| cells[X].is_finite());
@@ -119,7 +119,7 @@ impl Log {
             let due = starts
                 .last()
                 .is_none_or(|last| self.times[row] - self.times[*last] >= segment);
-            // A remainder shorter than half a segment joins the previous one.
+            // A remainder shorter than half a segment is added to the previous one.
             let left = *self.times.last().unwrap_or(&SimTime::ZERO) - self.times[row];
             if due && is_start(cells) && (starts.is_empty() || left.0 * 2 >= segment.0) {
                 starts.push(row);
@@ -130,7 +130,7 @@ impl Log {
     }
 }
 
-/// A measured value in SI; NaN if missing.
+/// A measurement in SI; NaN if missing.
 fn cell(sheet: &Sheet, row: usize, column: usize, unit: Unit) -> Result<f64, Mistake> {
     if sheet.is_missing(row, column) {
         return Ok(f64::NAN);

@@ -1,7 +1,7 @@
-//! Identification: finds the parameters of a boat file with which the model reproduces a recorded
+//! Identification: finds the parameters of a boat file for which the model reproduces a recorded
 //! run.
 //!
-//! Open [`fit`] first; `problem` defines the minimised function.
+//! Read [`fit`] first; `problem` defines the minimised function.
 
 mod fit;
 mod log;
@@ -14,7 +14,8 @@ pub use log::Log;
 pub use parameter::{PARAMETERS, Parameter};
 pub use rollout::Setting;
 
-/// A boat file with the fitted parameters and everything else from `base`. `log` is the log's name.
+/// A boat file with the fitted parameters, and everything else from `base`. `log` is the log's
+/// name.
 pub fn written(fit: &Fit, base: &str, log: &str) -> String {
     let mut text = format!(
         "# Fitted to {} by squall identify: value ± 95 %.\n",

@@ -11,7 +11,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its table in a boat file.
     pub table: &'static str,
-    /// Its key there.
+    /// Its key in that table.
     pub key: &'static str,
     /// Whether it is fitted by default.
     pub by_default: bool,
@@ -119,7 +119,7 @@ impl Parameter {
     }
 }
 
-/// A parameter as the search varies it: by a factor, so that it stays positive and steps are
+/// A parameter as varied by the search: by a factor, so that it stays positive and steps are
 /// comparable.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knob {
@@ -130,7 +130,7 @@ pub(super) struct Knob {
     scale: f64,
 }
 
-/// Initial value for a parameter that is zero in the boat when the search begins.
+/// Initial value of a parameter that is zero in the boat at the start of the search.
 const FROM_ZERO: f64 = 0.01;
 
 impl Knob {
@@ -150,7 +150,7 @@ impl Knob {
 
     /// The value at a search coordinate, where 0 is the start.
     pub(super) fn value(&self, at: f64) -> f64 {
-        // A factor of e^20 either way is beyond any boat but does not overflow.
+        // A factor of e^20 either way exceeds any real boat but does not overflow.
         self.scale * math::exp(at.clamp(-20.0, 20.0))
     }
 

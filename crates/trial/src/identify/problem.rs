@@ -2,9 +2,9 @@
 //! parameters.
 //!
 //! Multiple shooting: the model restarts in every segment, from a state that is itself fitted,
-//! since measured starts have noise. For given parameters the best starts are a small linear
-//! problem per segment, so the search varies only the parameters (variable projection, Golub and
-//! Pereyra 1973, with Kaufman's simplification of the Jacobian, 1975).
+//! since measured starts contain noise. For given parameters, finding the best starts is a small
+//! linear problem per segment, so the search varies only the parameters (variable projection, Golub
+//! and Pereyra 1973, with Kaufman's simplification of the Jacobian, 1975).
 
 use super::log::Log;
 use super::parameter::Knob;
@@ -13,11 +13,11 @@ use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use scenario::boat::Boat;
 
-/// Step of a parameter's logarithm for its finite difference.
+/// Step of a parameter's logarithm for finite differences.
 const PARAMETER_STEP: f64 = 1e-4;
-/// Step of a start for its finite difference, in standard deviations of its channel.
+/// Step of a start for finite differences, in standard deviations of its channel.
 const START_STEP: f64 = 1e-2;
-/// Corrections of the starts for each set of parameters; few suffice, since the search continues
+/// Corrections of the starts for each set of parameters; few are enough, since the search continues
 /// from the last ones.
 const CORRECTIONS: usize = 2;
 
@@ -40,7 +40,7 @@ pub(super) struct Problem<'a> {
     /// The search coordinate.
     pub(super) at: DVector<f64>,
     starts: Vec<Point>,
-    /// Whitened residuals at `at`; none if the model cannot be simulated.
+    /// Whitened residuals at `at`; `None` if the model cannot be simulated.
     residuals: Option<DVector<f64>>,
     /// Called at every step with the root mean square of the residuals.
     tell: &'a dyn Fn(Option<f64>),
@@ -78,7 +78,7 @@ impl<'a> Problem<'a> {
             log,
             segments,
             knobs,
-            // Typical accuracies of such instruments; the residuals then give better values.
+            // Typical accuracies of such instruments; the residuals later give better values.
             sigmas: [0.3, 0.3, 0.02, 0.05, 0.05, 0.01],
             cells,
             borders,
@@ -88,8 +88,8 @@ impl<'a> Problem<'a> {
             residuals: None,
             tell,
         };
-        // A model that starts from a noisy measurement is off from the first row on, and the search
-        // would distort parameters to compensate.
+        // A model that starts from a noisy measurement is wrong from the first row on, and the
+        // search would distort parameters to compensate.
         problem.settle();
         problem
     }
@@ -144,8 +144,8 @@ impl<'a> Problem<'a> {
             .then_some(residuals)
     }
 
-    /// Derivatives of the residuals with respect to the starts: a segment's start columns are in
-    /// its rows.
+    /// Derivatives of the residuals with respect to the starts: a segment's start columns are
+    /// stored in its rows.
     fn by_starts(&self, boat: &Boat, residuals: &DVector<f64>) -> Option<DMatrix<f64>> {
         let mut columns = Vec::with_capacity(self.fitted.len());
         for channel in &self.fitted {
@@ -158,8 +158,8 @@ impl<'a> Problem<'a> {
         Some(DMatrix::from_columns(&columns))
     }
 
-    /// For each segment, the best change of its start to cancel `from`, in the columns of
-    /// `by_starts`; none if undetermined.
+    /// For each segment, the change of its start that best cancels `from`, in the columns of
+    /// `by_starts`; `None` if undetermined.
     fn corrections(
         &self,
         by_starts: &DMatrix<f64>,
@@ -168,7 +168,7 @@ impl<'a> Problem<'a> {
         let correction = |border: &[usize]| {
             let columns = by_starts.rows(border[0], border[1] - border[0]);
             let mut normal = columns.tr_mul(&columns);
-            // Small enough to matter only for a channel without information.
+            // So small that it matters only for a channel without information.
             (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1e-9);
             Some(
                 normal
@@ -218,7 +218,8 @@ impl<'a> Problem<'a> {
                     start[*channel] -= change * self.sigmas[*channel];
                 }
             }
-            // A correction that increases the residuals left the nearly linear range of the model.
+            // A correction that increases the residuals has left the nearly linear range of the
+            // model.
             match self.weighed(&boat, &starts) {
                 Some(better) if better.norm_squared() < residuals.norm_squared() => {
                     (self.starts, self.residuals) = (starts, Some(better));

@@ -25,8 +25,8 @@ pub struct Setting {
 }
 
 /// The motion of `boat` from each segment's start under the log's commands, at the rows from the
-/// first start on; none if its state becomes non-finite. The thrusters run through all segments
-/// continuously.
+/// first start on; `None` if its state becomes non-finite. The thrusters run continuously through
+/// all segments.
 pub(super) fn rollout(
     boat: &Boat,
     setting: &Setting,
@@ -43,7 +43,7 @@ pub(super) fn rollout(
     );
     let mut points = vec![[f64::NAN; 6]; segments[0]];
     for (segment, start) in segments.windows(2).zip(starts) {
-        // The thrusters follow the earlier commands first; the boat's motion meanwhile does not
+        // First the thrusters follow the earlier commands; the boat's motion in this time does not
         // matter.
         while trial_boat.now() + SimTime(setting.tick.0 / 2) < log.times[segment[0]] {
             trial_boat.step(log.orders.at(trial_boat.now()));
@@ -77,7 +77,7 @@ pub(super) fn rollout(
     Some(points)
 }
 
-/// The boat's position and motion; its heading within half a turn of the previous one.
+/// The boat's position and motion, with its heading within half a turn of the previous one.
 fn point(trial_boat: &TrialBoat, heading_before: f64) -> Point {
     let sample = trial_boat.sample(0.0, Command::Hold);
     let heading = heading_before + wrap_pi(sample.psi_rad - heading_before);

@@ -23,7 +23,7 @@ const FAILED: MavResult = MavResult::MAV_RESULT_FAILED;
 const DO_SEND_BANNER: u16 = 42_428;
 /// Rover's modes, emulated or not.
 const ROVER_MODES: [u32; 14] = [0, 1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 15, 16];
-/// A smaller change does not move the home of a disarmed boat, m.
+/// Minimum change that moves the home of a disarmed boat, m.
 const HOME_MOVES_M: f64 = 0.5;
 /// The only flag of MAV_CMD_DO_REPOSITION: the boat may change to GUIDED.
 const CHANGE_MODE: i32 = 1;
@@ -33,14 +33,14 @@ fn result_of(is_done: bool) -> MavResult {
 }
 
 impl ArduPilot {
-    /// Converted to the equivalent COMMAND_INT, as in ArduPilot.
+    /// Converts the command to the equivalent COMMAND_INT, as ArduPilot does.
     pub(super) fn take_command_long(
         &mut self,
         now: SimTime,
         from: (u8, u8),
         long: &COMMAND_LONG_DATA,
     ) {
-        // Rover takes the position of this command in a COMMAND_INT only.
+        // Rover accepts the position of this command only in a COMMAND_INT.
         if long.command == MavCmd::MAV_CMD_DO_REPOSITION {
             let unsupported = MavResult::MAV_RESULT_UNSUPPORTED;
             return self.acknowledge(from, long.command as u16, unsupported);
@@ -97,7 +97,7 @@ impl ArduPilot {
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => result_of(self.change_speed(f64::from(param2))),
             MavCmd::MAV_CMD_DO_REPOSITION => self.command_reposition(command),
             MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH => self.command_mode(RoverMode::Rtl.number()),
-            // Rover does not support a part of the mission either.
+            // Rover does not support partial missions either.
             MavCmd::MAV_CMD_MISSION_START if param1 != 0.0 || param2 != 0.0 => DENIED,
             MavCmd::MAV_CMD_MISSION_START => self.command_mode(RoverMode::Auto.number()),
             MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT
@@ -111,7 +111,7 @@ impl ArduPilot {
         self.acknowledge(from, command.command as u16, result);
     }
 
-    /// Handles a command unknown to the dialect.
+    /// Handles a command that is not in the dialect.
     pub(super) fn take_unknown_command(&mut self, from: (u8, u8), command: u16) {
         let result = if command == DO_SEND_BANNER {
             self.say(
@@ -125,7 +125,7 @@ impl ArduPilot {
         self.acknowledge(from, command, result);
     }
 
-    /// Takes a number, because commands unknown to the dialect are also acknowledged.
+    /// Takes a number, because commands outside the dialect are also acknowledged.
     pub(super) fn acknowledge(&mut self, from: (u8, u8), command: u16, result: MavResult) {
         let [low, high] = command.to_le_bytes();
         let payload = [low, high, result as u8, 0, 0, 0, 0, 0, from.0, from.1];
@@ -137,7 +137,7 @@ impl ArduPilot {
         );
     }
 
-    /// Like Rover, it knows its own modes only.
+    /// Changes the mode. Like Rover, it knows only its own modes.
     pub(super) fn command_own_mode(&mut self, base_mode: MavModeFlag, number: u32) -> MavResult {
         if base_mode.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
             self.command_mode(number)
@@ -161,7 +161,7 @@ impl ArduPilot {
         }
         let can = match mode {
             RoverMode::Manual | RoverMode::Hold | RoverMode::Guided | RoverMode::Loiter => true,
-            // Rover rejects a mode without a task, and reports so in a STATUSTEXT, which the
+            // Rover rejects a mode without a task and sends the reason in a STATUSTEXT, which the
             // gateway shows to its operator.
             RoverMode::Auto => self.mission.waypoints() > 0,
             RoverMode::Rtl => self.home.is_some(),
@@ -176,7 +176,7 @@ impl ArduPilot {
 
     pub(super) fn command_arming(&mut self, arm: bool) -> MavResult {
         if !arm {
-            // As in ArduPilot: outside AUTO, the mission begins again.
+            // As in ArduPilot, the mission restarts unless the boat is in AUTO already.
             if self.is_armed && self.mode != RoverMode::Auto {
                 self.autopilot.next = 1;
             }
@@ -219,8 +219,8 @@ impl ArduPilot {
         result_of(home.is_some())
     }
 
-    /// Moves the home of a disarmed boat to where it is, as in Rover, unless a ground station has
-    /// set it.
+    /// Moves the home of a disarmed boat to its position, as Rover does, unless a ground station
+    /// has set the home.
     pub(super) fn update_home(&mut self, here: Ned) {
         let before = self.home.and_then(|home| self.place(home));
         let has_moved = before.is_none_or(|home| home.distance(here) >= HOME_MOVES_M);
@@ -236,7 +236,7 @@ impl ArduPilot {
             .for_each(|place| self.autopilot.set_home(place));
     }
 
-    /// Changes the speed in the modes that go to positions; returns whether this is one.
+    /// Changes the speed in modes that drive to positions; returns whether the current mode is one.
     fn change_speed(&mut self, speed_m_s: f64) -> bool {
         match self.mode {
             RoverMode::Guided => self.set_points.set_speed(speed_m_s),
@@ -248,7 +248,7 @@ impl ArduPilot {
         }
     }
 
-    /// Goes to a position, at the given speed if any. Like Rover, it accepts a speed only on the
+    /// Drives to a position, at the given speed if any. Like Rover, it accepts a speed only on the
     /// way to another position.
     fn command_reposition(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
         let may_change_mode = command.param2 as i32 & CHANGE_MODE != 0;
@@ -266,7 +266,7 @@ impl ArduPilot {
         result_of(self.set_points.go_to(place))
     }
 
-    /// Continues with an item of the mission; returns whether it exists.
+    /// Continues the mission with the given item; returns whether the item exists.
     pub(super) fn set_current(&mut self, seq: u16) -> bool {
         let waypoint = self.mission.waypoint_of(seq);
         waypoint

@@ -1,24 +1,24 @@
-//! The ground station failsafe of an emulated ArduPilot boat, as in Rover: it needs no gateway.
+//! The ground station failsafe of an emulated ArduPilot boat, as in Rover; works without a gateway.
 
 use super::ArduPilot;
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{MavResult, MavSeverity};
 use primitives::SimTime;
 
-/// The state of the ground station whose loss matters, SYSID_MYGCS.
+/// The state of the ground station (SYSID_MYGCS) whose loss triggers the failsafe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StationWatch {
     /// When it was last heard; a station that was never heard cannot be lost.
     pub(super) heard_at: Option<SimTime>,
     /// When it was found lost.
     lost_at: Option<SimTime>,
-    /// Whether the failsafe has acted on this loss: only once, so that it does not overrule an
-    /// operator who takes over.
+    /// Whether the failsafe has acted on this loss. It acts only once, so that it does not override
+    /// an operator who takes over.
     pub(super) is_triggered: bool,
 }
 
 impl ArduPilot {
-    /// Without a message for FS_GCS_TIMEOUT the station is lost; after another FS_TIMEOUT the boat
+    /// The station is lost after FS_GCS_TIMEOUT without a message; FS_TIMEOUT later the boat
     /// executes FS_ACTION. It stays armed, whatever the mode, except for the action that
     /// terminates.
     pub(super) fn check_failsafe(&mut self, now: SimTime) {
@@ -35,7 +35,7 @@ impl ArduPilot {
         }
         let lost_at = *self.station.lost_at.get_or_insert(now);
         let is_due = (now - lost_at).as_s() > self.parameters.value("FS_TIMEOUT");
-        // A boat at rest or on its way home is left alone.
+        // The failsafe does not act on a boat at rest or on its way home.
         if is_due
             && !self.station.is_triggered
             && !matches!(self.mode, RoverMode::Hold | RoverMode::Rtl)
@@ -48,7 +48,7 @@ impl ArduPilot {
 
     fn fail_safe(&mut self) {
         self.set_points.manual = None;
-        // With 2 a mission continues.
+        // With a value of 2, a mission continues.
         if self.mode == RoverMode::Auto && self.parameters.value("FS_GCS_ENABLE") == 2.0 {
             return self.say(
                 MavSeverity::MAV_SEVERITY_WARNING,

@@ -1,5 +1,5 @@
-//! The mission of an emulated ArduPilot boat: it requests one item after the other, and shows them
-//! on request.
+//! The mission of an emulated ArduPilot boat: requests the items one by one, and sends them on
+//! request.
 
 #![expect(
     deprecated,
@@ -19,12 +19,12 @@ use primitives::{LatLon, SimTime};
 /// Maximum number of items accepted.
 // About the capacity of a board that runs ArduPilot.
 const ITEMS_MAX: u16 = 700;
-/// A missing item is requested again after this time, s.
+/// Time after which a missing item is requested again, s.
 const AGAIN_S: f64 = 1.0;
-/// An upload without an item for this long is abandoned, s.
+/// Time without an item after which an upload is abandoned, s.
 const UPLOAD_AGE_MAX_S: f64 = 8.0;
 
-/// The current mission, and the one that is being uploaded.
+/// The current mission, and the mission being uploaded.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MissionStore {
     items: Vec<MISSION_ITEM_INT_DATA>,
@@ -37,7 +37,7 @@ struct Upload {
     from: (u8, u8),
     count: u16,
     items: Vec<MISSION_ITEM_INT_DATA>,
-    /// When the last item arrived, and when one was last requested.
+    /// When the last item arrived, and when an item was last requested.
     came_at: SimTime,
     asked_at: SimTime,
 }
@@ -45,7 +45,7 @@ struct Upload {
 impl Upload {
     fn request(&mut self, now: SimTime) -> MavMessage {
         self.asked_at = now;
-        // ArduPilot requests items with this message, and dronekit knows no other.
+        // ArduPilot requests items with this message, and dronekit supports no other.
         MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA {
             seq: self.items.len() as u16,
             target_system: self.from.0,
@@ -113,7 +113,7 @@ impl MissionStore {
         })
     }
 
-    /// Repeats the request of a stalled upload; finally abandons the upload.
+    /// Repeats the request of a stalled upload, and finally abandons the upload.
     pub(super) fn overdue(&mut self, now: SimTime) -> Option<MavMessage> {
         let upload = self.upload.as_mut()?;
         if (now - upload.came_at).as_s() > UPLOAD_AGE_MAX_S {
@@ -124,7 +124,7 @@ impl MissionStore {
         ((now - upload.asked_at).as_s() > AGAIN_S).then(|| upload.request(now))
     }
 
-    /// Ends an upload for lack of the requested item; returns the reply to its sender.
+    /// Ends an upload because the requested item is missing; returns the reply to its sender.
     pub(super) fn refuse(&mut self, from: (u8, u8), reason: MavMissionResult) -> MavMessage {
         self.end_upload(from);
         ack(from, reason)
@@ -135,7 +135,8 @@ impl MissionStore {
     }
 
     /// Handles a message of the mission protocol from a system and component; returns the reply, if
-    /// one is due. The outer `None` means another message. Item 0 is the home, 1e-7 degrees.
+    /// one is due. The outer `None` means that the message is not part of it. Item 0 is the home,
+    /// 1e-7 degrees.
     pub(super) fn answer(
         &mut self,
         now: SimTime,
@@ -146,7 +147,7 @@ impl MissionStore {
         if let Some(mission_type) =
             type_of(message).filter(|kind| *kind != MavMissionType::MAV_MISSION_TYPE_MISSION)
         {
-            // The reply of a board without fences and rally points.
+            // The reply of a board that has no fences and rally points.
             return Some(Some(typed_ack(
                 from,
                 MavMissionResult::MAV_MISSION_UNSUPPORTED,
@@ -227,7 +228,7 @@ impl MissionStore {
         let Some(upload) = self.upload.as_mut().filter(|upload| upload.from == from) else {
             return ack(from, MavMissionResult::MAV_MISSION_ERROR);
         };
-        // The upload continues: the request is repeated in time.
+        // The upload continues; the request is repeated later.
         if usize::from(item.seq) != upload.items.len() {
             return ack(from, MavMissionResult::MAV_MISSION_INVALID_SEQUENCE);
         }
@@ -272,7 +273,7 @@ impl MissionStore {
     }
 }
 
-/// Why an item is rejected: the boat would not execute it.
+/// Why the boat would not execute an item, and so rejects it.
 fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     match item.command {
         _ if item.param1.is_nan() => Some(MavMissionResult::MAV_MISSION_INVALID_PARAM1),
@@ -308,7 +309,7 @@ fn type_of(message: &MavMessage) -> Option<MavMissionType> {
     })
 }
 
-/// An item in the older message, whose positions are in degrees.
+/// Converts an item of the older message, whose positions are in degrees.
 pub(super) fn int_from_float(item: &MISSION_ITEM_DATA) -> MISSION_ITEM_INT_DATA {
     MISSION_ITEM_INT_DATA {
         param1: item.param1,

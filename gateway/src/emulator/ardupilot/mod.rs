@@ -1,8 +1,8 @@
 //! An emulated ArduPilot Rover boat: MAVLink commands in, telemetry out, without sockets or clocks.
 //!
 //! It follows Rover's documentation for boats: it is driven in mode GUIDED when armed, drops a
-//! set-point after three seconds, accepts messages for its own system and for all, and acknowledges
-//! commands.
+//! set-point after three seconds, accepts messages for its own system and broadcasts, and
+//! acknowledges commands.
 
 mod command;
 mod failsafe;
@@ -34,9 +34,9 @@ use set_point::{FORGOTTEN, SetPoints};
 use std::collections::{BTreeMap, VecDeque};
 use telemetry::Streams;
 
-/// Its system number until SYSID_THISMAV is set.
+/// System number until SYSID_THISMAV is set.
 pub const SYSTEM: u8 = 1;
-/// Maximum number of log messages that wait to be read.
+/// Maximum number of unread log messages.
 const REMARKS_MAX: usize = 64;
 
 /// The front seat of an emulated boat that speaks MAVLink.
@@ -57,28 +57,28 @@ pub struct ArduPilot {
     streams: Streams,
     station: StationWatch,
     sensed: Sensed,
-    /// The position of its first fix: the origin of the frame LOCAL_NED.
+    /// The position of the first fix: the origin of the frame LOCAL_NED.
     origin: Option<Ned>,
     /// UTC at time zero, µs since 1970.
     began_us: u64,
     battery: Battery,
     remarks: VecDeque<String>,
-    /// When it last reported that it does not support a message, by message number.
+    /// When the boat last reported each message number as unsupported.
     complaints: BTreeMap<u32, SimTime>,
     /// Frames to send as soon as possible.
     outbox: Vec<u8>,
 }
 
 impl ArduPilot {
-    /// A boat in HOLD, disarmed, on a field with this origin, with this fraction of its charge;
-    /// `None` is full and never drains.
+    /// A boat in HOLD, disarmed, on a field with the given origin, with the given fraction of its
+    /// charge; `None` means full, without drain.
     pub fn new(datum: LatLon, charge: Option<f64>) -> ArduPilot {
         ArduPilot {
             frame: LocalFrame::new(datum),
             framer: Framer::new(),
             writer: Writer::new(SYSTEM, AUTOPILOT),
-            // INITIAL_MODE 4 of our recommended parameters: a boat that has just started belongs to
-            // the gateway, and stays at rest.
+            // INITIAL_MODE is 4 in our recommended parameters: a boat that has just started belongs
+            // to the gateway, and stays at rest.
             mode: RoverMode::Hold,
             is_armed: false,
             set_points: SetPoints::default(),
@@ -101,7 +101,7 @@ impl ArduPilot {
 
     /// Receives bytes from a link.
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
-        // Taken out during the call, because the callback needs the whole boat.
+        // Move it out during the call, because the callback needs the whole boat.
         let mut framer = std::mem::take(&mut self.framer);
         framer.push_frames(bytes, &mut |frame| match frame {
             Frame::Read(received) => self.apply(now, &received),
@@ -110,7 +110,7 @@ impl ArduPilot {
         self.framer = framer;
     }
 
-    /// Sets its mode, as a remote control or the boat itself does.
+    /// Sets the mode, as a remote control or the boat itself does.
     pub fn set_mode(&mut self, mode: RoverMode) {
         if self.mode != mode {
             self.mode = mode;
@@ -135,7 +135,7 @@ impl ArduPilot {
     }
 
     fn note(&mut self, remark: String) {
-        // Log messages need not be read.
+        // Log messages may go unread.
         if self.remarks.len() < REMARKS_MAX {
             self.remarks.push_back(remark);
         }
@@ -146,14 +146,14 @@ impl ArduPilot {
         self.battery.shown_v = Some(volts);
     }
 
-    /// The thrusters' order from its mode and set-point.
+    /// The thruster order that follows from mode and set-point.
     fn commanded(&mut self, now: SimTime) -> Order {
         let Some(own) = self.sensed.own else {
             return Order::Hold;
         };
         let pose = own.nav.pose();
         if self.mode == RoverMode::Guided && self.set_points.expires(now) {
-            // Here a boat keeps station, whereas a car stops.
+            // In this mode a boat keeps station, whereas a car stops.
             self.autopilot.begin(pose.at);
             self.say(MavSeverity::MAV_SEVERITY_WARNING, FORGOTTEN);
         }
@@ -190,7 +190,7 @@ impl ArduPilot {
     /// Appends the frames to send at once.
     pub fn answers(&mut self, out: &mut Vec<u8>) {
         out.append(&mut self.outbox);
-        // Here and not earlier: the reply to a new number comes from the old one.
+        // Set the number here and not earlier: the reply to a new number comes from the old one.
         self.writer.system = self.system();
     }
 
@@ -216,7 +216,7 @@ impl ArduPilot {
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {
             MavMessage::HEARTBEAT(_) if is_station => self.station.heard_at = Some(now),
-            // Without an acknowledgement, as from version 4.6 on.
+            // Not acknowledged, as from version 4.6 on.
             MavMessage::SET_MODE(set) => {
                 self.command_own_mode(set.base_mode, set.custom_mode);
             }
@@ -278,7 +278,7 @@ impl ArduPilot {
         self.autopilot.set_mission(places, speed_m_s);
     }
 
-    /// Handles a set-point, which counts only in mode GUIDED.
+    /// Handles a set-point, which takes effect only in mode GUIDED.
     fn take_set_point(&mut self, now: SimTime, message: &MavMessage) {
         let (Some(own), Some(origin), RoverMode::Guided) =
             (self.sensed.own, self.origin, self.mode)
@@ -329,13 +329,13 @@ impl ArduPilot {
         on_globe(at_e7).map(|at| self.frame.ned(at))
     }
 
-    /// The latitude and longitude of a place on the field, 1e-7 degrees.
+    /// The latitude and longitude of a point on the field, 1e-7 degrees.
     fn e7(&self, place: Ned) -> (i32, i32) {
         let at = self.frame.lat_lon(place);
         (e7(at.lat_deg), e7(at.lon_deg))
     }
 
-    /// UTC from its receiver, µs since 1970.
+    /// UTC from the receiver, µs since 1970.
     fn utc_us(&self, now: SimTime) -> u64 {
         self.began_us + (1e6 * now.as_s()) as u64
     }

@@ -1,4 +1,4 @@
-//! The parameters of an emulated ArduPilot boat: a few of the real ones, with their names up to
+//! The parameters of an emulated ArduPilot boat: a subset of the real ones, with their names up to
 //! version 4.6.
 
 use crate::mavlink::dialect::{
@@ -24,7 +24,7 @@ const INT8: MavParamType = MavParamType::MAV_PARAM_TYPE_INT8;
 const INT16: MavParamType = MavParamType::MAV_PARAM_TYPE_INT16;
 const REAL32: MavParamType = MavParamType::MAV_PARAM_TYPE_REAL32;
 
-/// The index in replies about a parameter that was named.
+/// The index in replies to requests by name.
 const BY_NAME: u16 = u16::MAX;
 
 /// All parameters.
@@ -115,7 +115,7 @@ fn index_of(name: &str) -> Option<usize> {
         .position(|(known, ..)| known.eq_ignore_ascii_case(name))
 }
 
-/// Whether a value is valid for a parameter: the boat must keep a valid system number.
+/// Whether a parameter may have a value: the boat must keep a valid system number.
 fn is_allowed(name: &str, value: f32) -> bool {
     value.is_finite()
         && (name != "SYSID_THISMAV" || (1.0..=255.0).contains(&value) && value.fract() == 0.0)

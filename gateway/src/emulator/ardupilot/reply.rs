@@ -1,4 +1,4 @@
-//! The replies of an emulated ArduPilot boat to unsupported requests: every request gets a reply.
+//! The replies of an emulated ArduPilot boat to unsupported requests: each gets a reply.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 
@@ -12,13 +12,13 @@ use crate::mavlink::dialect::{
 use ::mavlink::Message;
 use primitives::SimTime;
 
-/// Minimum time between reports that it does not support a message, s.
+/// Minimum time between reports that a message is not supported, s.
 const COMPLAINT_S: f64 = 1.0;
-/// The file transfer protocol: a negative reply, with the reason that the command is unknown.
+/// Negative reply of the file transfer protocol, for an unknown command.
 const NAK: u8 = 129;
 const UNKNOWN_COMMAND: u8 = 7;
-/// The offset of the target system in messages, by number, for messages with enumerations; the
-/// component follows it.
+/// The offset of the target system, by number of the message, for messages with enumerations; the
+/// target component follows it.
 const TARGET_AT: [(u32, usize); 12] = [
     (23, 4),
     (39, 32),
@@ -60,7 +60,7 @@ impl ArduPilot {
                 })
             }
             MavMessage::SET_GPS_GLOBAL_ORIGIN(_) => self.origin_message(),
-            // Nothing is requested, and Rover answers no PING.
+            // These request nothing, and Rover answers no PING.
             MavMessage::TIMESYNC(_) | MavMessage::PING(_) | MavMessage::LOG_REQUEST_END(_) => {
                 return;
             }
@@ -104,7 +104,7 @@ impl ArduPilot {
         }
     }
 
-    /// Reports that a message is not supported: at once, but less often than set-points arrive.
+    /// Reports that a message is not supported: at once, but not as often as set-points arrive.
     pub(super) fn complain(&mut self, now: SimTime, id: u32, text: &str) {
         let said = self
             .complaints
@@ -117,7 +117,7 @@ impl ArduPilot {
         }
     }
 
-    /// Sends a text to operators, 50 characters at most.
+    /// Sends a string to operators, 50 characters at most.
     pub(super) fn say(&mut self, severity: MavSeverity, text: &str) {
         let status = STATUSTEXT_DATA {
             severity,
@@ -133,8 +133,8 @@ impl ArduPilot {
     }
 }
 
-/// The negative reply to a request of the file transfer protocol: sequence number, session, opcode,
-/// size, the request's opcode, then data.
+/// The negative reply to a file transfer request: sequence number, session, opcode, size, the
+/// request's opcode, then data.
 fn refused(request: &[u8; 251]) -> [u8; 251] {
     let mut reply = [0; 251];
     let next = u16::from_le_bytes([request[0], request[1]]).wrapping_add(1);

@@ -12,12 +12,12 @@ use primitives::frame::{Ned, Pose, Rotation};
 use primitives::{SimTime, math};
 use std::f64::consts::PI;
 
-/// A set-point in mode GUIDED expires after this time, s, as does one from a remote control over
-/// MAVLink.
+/// Lifetime of a set-point in mode GUIDED, and of remote control input over MAVLink, s.
 const HELD_S: f64 = 3.0;
 /// Rover's message when a set-point in mode GUIDED expires.
 pub(super) const FORGOTTEN: &str = "target not received last 3secs, stopping";
-/// A boat with a rate of turn steers to the heading that the rate reaches in this time, s.
+/// A boat ordered to turn at a rate steers to the heading that it reaches at this rate in this
+/// time, s.
 const TURN_LEAD_S: f64 = 1.0;
 /// Minimum commanded speed on the way to a position, m/s.
 pub(super) const SPEED_MIN_M_S: f64 = 0.05;
@@ -42,7 +42,7 @@ struct Target {
     yaw_rad: Option<f64>,
     yaw_rate_rad_s: Option<f64>,
     has_acceleration: bool,
-    /// The true heading of its frame's first axis, rad.
+    /// The true heading of the first axis of the frame, rad.
     frame_rad: f64,
 }
 
@@ -81,7 +81,7 @@ impl Target {
     }
 }
 
-/// Whether positions in a frame are latitude and longitude.
+/// Whether positions in a frame are given as latitude and longitude.
 #[expect(deprecated, reason = "ground stations send the older frames, too")]
 pub(super) fn is_global(frame: MavFrame) -> bool {
     matches!(
@@ -100,9 +100,9 @@ pub(super) fn is_global(frame: MavFrame) -> bool {
 pub(super) struct SetPoints {
     /// In mode GUIDED: when it arrived, the steering target, and the speed, m/s.
     pub(super) guided: Option<(SimTime, Course, f64)>,
-    /// The position to which it goes instead.
+    /// The position to go to instead.
     destination: Option<Ned>,
-    /// The commanded speed on the way there, if any, m/s.
+    /// The commanded speed on the way to it, if any, m/s.
     speed_m_s: Option<f64>,
     /// The input of a remote control over MAVLink: throttle and steering, -1 to 1.
     pub(super) manual: Option<(SimTime, f64, f64)>,
@@ -120,7 +120,7 @@ impl SetPoints {
             .is_some()
     }
 
-    /// Sets a heading or a rate of turn, with a fraction of the highest speed, m/s.
+    /// Sets a heading or a rate of turn, with a fraction of the maximum speed (m/s).
     ///
     /// # Errors
     /// The reason if Rover ignores it.
@@ -131,7 +131,7 @@ impl SetPoints {
         speed_max_m_s: f64,
     ) -> Result<(), &'static str> {
         let mask = target.type_mask;
-        // Rover drops the whole message if it carries no throttle.
+        // Rover drops the whole message if it contains no throttle.
         if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_THROTTLE_IGNORE) {
             return Err("set-point ignored: it has no throttle");
         }
@@ -150,7 +150,7 @@ impl SetPoints {
     }
 
     /// Sets a position relative to the origin or the boat, or a velocity. The boat's own heading
-    /// matters in frames that turn with it.
+    /// matters in frames that rotate with the boat.
     ///
     /// # Errors
     /// The reason if Rover ignores it.
@@ -223,8 +223,9 @@ impl SetPoints {
         self.follow(now, &asked, speed_max_m_s)
     }
 
-    /// Sets a position, or a speed with the heading of the velocity, another heading, or a rate of
-    /// turn. Like Rover's `handle_set_position_target_local_ned`, including its sign of the speed.
+    /// Sets a position, or a speed with the heading of the velocity, a different heading, or a rate
+    /// of turn. Follows Rover's `handle_set_position_target_local_ned`, including its sign of the
+    /// speed.
     fn follow(
         &mut self,
         now: SimTime,
@@ -243,7 +244,7 @@ impl SetPoints {
         }
         let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
         let course = match (target.yaw_rad, target.yaw_rate_rad_s) {
-            // Rover accepts one or the other, and ignores the message if both are given.
+            // Rover accepts only one of them, and ignores a message with both.
             (Some(_), Some(_)) => return Err("set-point ignored: yaw and yaw rate"),
             (Some(yaw_rad), None) => Course::Heading(yaw_rad + target.frame_rad),
             (None, Some(rate_rad_s)) => Course::Turn(rate_rad_s),
@@ -252,9 +253,9 @@ impl SetPoints {
             }
             (None, None) => Course::Heading(math::atan2(y_m_s, x_m_s) + target.frame_rad),
         };
-        // The sign of x becomes that of the speed, even in frames where x points north. This is the
-        // bug in Rover/GCS_MAVLink_Rover.cpp that sent boats astern on southward headings. It is
-        // imitated so that our closed loops detect a yaw sent with a velocity.
+        // The speed takes the sign of x, even in frames where x points north. This bug in
+        // Rover/GCS_MAVLink_Rover.cpp sent boats astern on southward headings. It is imitated so
+        // that our closed-loop tests detect a yaw sent with a velocity.
         let has_yaw = target.yaw_rad.is_some() || target.yaw_rate_rad_s.is_some();
         let sign = if has_yaw && x_m_s < 0.0 { -1.0 } else { 1.0 };
         self.set(
@@ -264,7 +265,7 @@ impl SetPoints {
         )
     }
 
-    /// Goes to a position if it is valid.
+    /// Goes to a position, if valid.
     pub(super) fn go_to(&mut self, place: Ned) -> bool {
         if place.is_finite() {
             (self.guided, self.destination) = (None, Some(place));
@@ -272,7 +273,7 @@ impl SetPoints {
         place.is_finite()
     }
 
-    /// Sets the speed on the way to a position, m/s; returns whether there is one.
+    /// Sets the speed (m/s) on the way to a position; returns whether there is a position.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
         let is_taken = self.destination.is_some() && speed_m_s >= SPEED_MIN_M_S;
         self.speed_m_s = if is_taken {
@@ -283,18 +284,18 @@ impl SetPoints {
         is_taken
     }
 
-    /// The position to which it goes in mode GUIDED, if any, and the commanded speed, m/s.
+    /// The destination in mode GUIDED, if any, and the commanded speed, m/s.
     pub(super) fn destination(&self) -> Option<(Ned, Option<f64>)> {
         self.destination.map(|place| (place, self.speed_m_s))
     }
 
-    /// The ordered heading in mode GUIDED, whole degrees, as version 4.7 shows it (earlier ones
-    /// show 0); 0 without one.
+    /// The ordered heading in mode GUIDED, whole degrees, as version 4.7 shows it (earlier versions
+    /// show 0); 0 if there is none.
     pub(super) fn nav_bearing(&self, now: SimTime) -> i16 {
         match self.guided {
             Some((at, Course::Heading(heading_rad), _)) if (now - at).as_s() <= HELD_S => {
-                // Rover 4.7 shows whole degrees here, truncated rather than rounded; earlier
-                // versions always show 0.
+                // Rover 4.7 shows whole degrees, truncated rather than rounded; earlier versions
+                // show 0.
                 wrap_pi(heading_rad).to_degrees() as i16
             }
             _ => 0,
@@ -336,7 +337,7 @@ impl SetPoints {
     pub(super) fn manual(&self, now: SimTime) -> Order {
         match self.manual {
             Some((at, throttle, steering)) if (now - at).as_s() <= HELD_S => {
-                // PILOT_STEER_TYPE 0: going astern, the remote control steers the stern.
+                // PILOT_STEER_TYPE 0: when going astern, the remote control steers the stern.
                 let side = if throttle < 0.0 { -1.0 } else { 1.0 };
                 autopilot::thrust(100.0 * throttle, 100.0 * side * steering)
             }
@@ -355,8 +356,7 @@ impl SetPoints {
                 autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S)
             }
             Course::Heading(heading_rad) => autopilot::steer(Some(heading_rad), Some(speed_m_s)),
-            // Our gateway stops a boat with a set-point of zero: it must rest and not hold a
-            // heading.
+            // Our gateway stops a boat with a set-point of zero: it must rest, not hold a heading.
             Course::Turn(0.0) if speed_m_s == 0.0 => Order::Hold,
             Course::Turn(rate_rad_s) => {
                 let by_rad = (rate_rad_s * TURN_LEAD_S).clamp(-PI, PI);

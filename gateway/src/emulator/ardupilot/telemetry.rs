@@ -22,21 +22,21 @@ use primitives::angle::compass_deg_from_rad;
 use primitives::frame::Ned;
 use std::collections::BTreeMap;
 
-/// POSITION_TARGET_GLOBAL_INT of Rover: only the position counts.
+/// Mask of Rover's POSITION_TARGET_GLOBAL_INT: only the position is valid.
 const POSITION_ALONE: u16 = 0xFDF8;
 /// Minimum interval of a message, s: four fifths of Rover's 50 loops a second.
 const INTERVAL_MIN_S: f64 = 0.025;
 /// Version 4.6.3, in ArduPilot's encoding.
 const VERSION: u32 = 0x0406_03FF;
 
-/// EKF_STATUS_REPORT of ArduPilot's own dialect: its number, the byte of its definition in the
-/// checksum, and its flags when healthy and without a fix.
+/// EKF_STATUS_REPORT of ArduPilot's own dialect: number, the CRC byte of its definition, and flags
+/// when healthy and without a fix.
 const EKF_STATUS_REPORT: u32 = 193;
 const EKF_EXTRA_CRC: u8 = 71;
 const EKF_WELL: u16 = 831;
 const EKF_WITHOUT_FIX: u16 = 165;
 
-/// The messages of each stream, which it sends once a second unless told otherwise.
+/// The messages of each stream, sent once a second by default.
 const STREAMS: [(MavDataStream, &[u32]); 6] = [
     (MavDataStream::MAV_DATA_STREAM_ALL, &[HEARTBEAT_DATA::ID]),
     (
@@ -65,7 +65,7 @@ const STREAMS: [(MavDataStream, &[u32]); 6] = [
     ),
 ];
 const INTERVAL_S: f64 = 1.0;
-/// The messages that it sends only on request.
+/// The messages sent only on request.
 const ON_REQUEST: [u32; 3] = [
     HOME_POSITION_DATA::ID,
     GPS_GLOBAL_ORIGIN_DATA::ID,
@@ -97,7 +97,7 @@ impl Streams {
         let mut due = vec![];
         for (id, (every_s, at)) in &mut self.regular {
             if now >= *at {
-                // In step with the caller, which polls at its own intervals.
+                // Keep in step with the caller, which polls at its own intervals.
                 *at = (*at + SimTime::from_s(*every_s)).max(now);
                 due.push(*id);
             }
@@ -123,7 +123,7 @@ impl Streams {
         MavResult::MAV_RESULT_ACCEPTED
     }
 
-    /// The interval of a message, µs: -1 means never, 0 an unsupported message.
+    /// The interval of a message, µs: -1 means never; 0 means that the message is unsupported.
     fn interval_us(&self, id: u32) -> i32 {
         let is_known = streamed().chain(ON_REQUEST).any(|known| known == id);
         let never = if is_known { -1 } else { 0 };
@@ -140,7 +140,7 @@ impl Streams {
         let asked = STREAMS
             .iter()
             .filter(|(stream, _)| is_all || *stream == request.req_stream_id);
-        // The heartbeat continues.
+        // The heartbeat always continues.
         for id in asked
             .flat_map(|(_, ids)| *ids)
             .filter(|id| **id != HEARTBEAT_DATA::ID)
@@ -176,7 +176,7 @@ impl ArduPilot {
         }
     }
 
-    /// Sends a message with current data; returns whether there was any.
+    /// Sends a message with current data; returns whether there were any.
     pub(super) fn send_message(&mut self, now: SimTime, id: u32) -> bool {
         if id == EKF_STATUS_REPORT {
             let flags = if self.sensed.has_fix(now) {
@@ -208,7 +208,7 @@ impl ArduPilot {
                     ..Default::default()
                 })
             }
-            // There are no velocities.
+            // It contains no velocities.
             POSITION_TARGET_GLOBAL_INT_DATA::ID if self.mode == RoverMode::Guided => {
                 let (lat_int, lon_int) = self.e7(self.position_target()?);
                 MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
@@ -258,7 +258,7 @@ impl ArduPilot {
             mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
             autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode,
-            // By the mode, armed or not.
+            // Depends on the mode, whether armed or not.
             system_status: match self.mode {
                 _ if self.station.is_triggered => MavState::MAV_STATE_CRITICAL,
                 RoverMode::Hold => MavState::MAV_STATE_STANDBY,
@@ -293,7 +293,7 @@ impl ArduPilot {
         (1000.0 * self.battery.volts()).round().clamp(0.0, 65_534.0) as u16
     }
 
-    /// The current drawn, 10 mA.
+    /// The current, in units of 10 mA.
     fn centiamps(&self) -> i16 {
         (100.0 * self.battery.amps())
             .round()
@@ -306,8 +306,8 @@ impl ArduPilot {
 
     fn battery(&self) -> BATTERY_STATUS_DATA {
         let mut voltages = [u16::MAX; 10];
-        // The whole pack in the first cell and the others unused, as reported by boards without
-        // cell monitors.
+        // The first cell shows the voltage of the whole pack and the others are unused, as on
+        // boards without cell monitors.
         voltages[0] = self.millivolts();
         BATTERY_STATUS_DATA {
             current_consumed: self.battery.used_mah().round() as i32,
@@ -350,7 +350,7 @@ impl ArduPilot {
         Some(self.e7(self.sensed.own?.nav.at()))
     }
 
-    /// The position to which it goes in GUIDED, or where it keeps station for lack of a set-point.
+    /// The destination in GUIDED, or the point where the boat keeps station without a set-point.
     fn position_target(&self) -> Option<Ned> {
         let destination = self.set_points.destination().map(|(place, _)| place);
         destination.or_else(|| {

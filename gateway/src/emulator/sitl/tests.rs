@@ -1,4 +1,4 @@
-//! SITL's datagrams, its clock and the frames that answer them.
+//! SITL's datagrams, its clock and the replies to the datagrams.
 
 use super::*;
 use messages::picture::Nav;
@@ -31,7 +31,7 @@ fn pulses(port_us: u16, starboard_us: u16) -> [u16; 16] {
 }
 
 /// Three numbers after a key, read as the firmware does: the first occurrence of the section's
-/// text, then of the key's, then `":[` without spaces.
+/// text, then that of the key, then `":[` without spaces.
 fn triple(json: &str, section: &str, key: &str) -> [f64; 3] {
     let section = json.find(section).expect("the section is there");
     let from = section + json[section..].find(key).expect("the key is there") + key.len();
@@ -67,7 +67,7 @@ fn near(found: [f64; 3], want: [f64; 3], tolerance: f64) {
     );
 }
 
-/// Everything that the firmware receives within the first `seconds` of a motion, at 400 Hz.
+/// All replies that the firmware receives within the first `seconds` of a motion, at 400 Hz.
 fn replies(seconds: f64, truth_at: impl Fn(f64) -> VehicleTruth) -> Vec<String> {
     let mut sitl = Sitl::new(SERVOS);
     let mut replies = Vec::new();
@@ -99,7 +99,7 @@ fn a_boat_at_rest_feels_gravity_along_its_own_axes() {
     near(triple(&json, "", "attitude"), [roll_rad, 0.0, 0.0], 1e-12);
 }
 
-/// 2 m/s on a circle of 10 m to starboard: 0.2 rad/s and 0.4 m/s² towards the centre.
+/// 2 m/s on a circle to starboard with a radius of 10 m: 0.2 rad/s and 0.4 m/s² towards the centre.
 #[test]
 fn a_turning_boat_is_on_its_circle_between_the_frames_too() {
     let (radius_m, turn_rad_s) = (10.0, 0.2);
@@ -122,7 +122,7 @@ fn a_turning_boat_is_on_its_circle_between_the_frames_too() {
             ..VehicleTruth::default()
         }
     };
-    // Once around, so that the heading wraps.
+    // A full circle, so that the heading wraps.
     let replies = replies(33.0, on_circle);
     assert_eq!(
         replies.len(),

@@ -1,4 +1,4 @@
-//! Handles incoming messages of a game server.
+//! Handles a game server's incoming messages.
 
 use super::GameServer;
 use crate::node::agents::{self, Accepted};
@@ -25,16 +25,16 @@ const ANSWERS_MAX: usize = 4;
 impl GameServer<'_> {
     /// Handles incoming messages, commands first. Waits up to `limit` for the first one.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
-        // Before and after waiting: the rest of the time is the sim's own work. If that exceeds a
+        // Before and after waiting: the remaining time is the sim's own work. If that exceeds a
         // second, the sim was suspended.
         self.time.pass(clock::now(), Duration::ZERO);
         let mut next = self.inbox.next_within(limit);
         self.time.pass(clock::now(), limit);
         self.obey();
         self.answer();
-        // Messages may arrive faster than they are read: the game continues anyway.
+        // Messages may arrive faster than they are read: the game must continue.
         for _ in 0..MESSAGES_MAX {
-            // Before each message, so that a flood delays an E-stop by at most one of them.
+            // Before each message, so that a flood delays an E-stop by at most one message.
             self.obey();
             let Some(incoming) = next else { return };
             self.take_in(incoming);
@@ -93,9 +93,9 @@ impl GameServer<'_> {
             }
             Incoming::Gone(node) => {
                 // A gateway reconnects with the same boat at once, and nothing waits for it, so no
-                // patience is needed.
+                // waiting time is needed.
                 self.gateways.gone(&node);
-                // Links may have timed out while the sim was suspended; the patience then decides
+                // Links may have timed out while the sim was suspended; the time limit then decides
                 // whether agents return.
                 if !self.time.is_recovering() {
                     let vehicles = self.agents.gone(&node);
@@ -178,7 +178,7 @@ impl GameServer<'_> {
         if !what.is_about(&message, vehicle, &name) {
             return self.refusals.count(Refusal::Garbage);
         }
-        // The next picture detects a closed session.
+        // If the session has closed, the next picture detects it.
         let passed_on = match (what, self.reports.get(&(vehicle, what))) {
             (_, None) => Ok(()),
             (Reported::Status, Some(publisher)) => publisher.send_json(message.clone()),
@@ -191,8 +191,8 @@ impl GameServer<'_> {
         self.record_message(format!("{what}/{name}"), schema, message);
     }
 
-    /// Simulated time by the clock: the open decision's time plus the time since. Only for fixes,
-    /// which would otherwise seem up to a decision older than they are.
+    /// Simulated time by the clock: the time of the open decision plus the time since. Only for
+    /// fixes, which would otherwise seem up to a decision older than they are.
     fn moment(&self) -> SimTime {
         let factor = if self.pace == Pace::Lockstep {
             0.0
@@ -226,7 +226,7 @@ impl GameServer<'_> {
         query.answer(token::answer(&reply));
     }
 
-    /// Handles a join request on the key of a team or boat; access control permits no other.
+    /// Handles a join request on the key of a team or boat; access control permits no other key.
     fn join_at(&mut self, key: &str, request: &JoinRequest) -> JoinReply {
         let place = topic::join(
             &self.game,
@@ -253,7 +253,7 @@ impl GameServer<'_> {
             .join(request, random_number(), self.contest.now());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
-                // The order in force came from another agent.
+                // The order in force came from a different agent.
                 self.contest.hold(*vehicle);
                 self.contest.regain_agent(*vehicle);
                 self.heard[vehicle.index()] = self.time.worked;
@@ -286,7 +286,7 @@ impl GameServer<'_> {
             Control::EStop => self.contest.e_stop(true),
             Control::Release => {
                 self.contest.e_stop(false);
-                // The next picture detects a closed session.
+                // If the session has closed, the next picture detects it.
                 drop(self.released.send_json(b"true".to_vec()));
             }
             Control::Halt => self.contest.halt(true),

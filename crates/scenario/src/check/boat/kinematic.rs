@@ -11,7 +11,7 @@ pub(super) fn check_kinematic(document: &Document<raw::Boat>, kinematic: &Kinema
     check_thrust_map(document, "kinematic.thrust_map", &kinematic.thrust_map);
 }
 
-/// Checks the map of thrust in per cent and speed in m/s at `path`.
+/// Checks the map of thrust (per cent) to speed (m/s) at `path`.
 pub fn check_thrust_map<T>(document: &Document<T>, path: &str, points: &[(f64, f64)]) {
     if !document.is_sound(path) {
         return;

@@ -12,8 +12,8 @@ use crate::read::Document;
 use crate::sensor::{Gps, MOST_PERIODS_LATE};
 use kinematic::check_kinematic;
 
-/// Physics steps are explicit: a decay rate above this many per tick would grow instead. (The limit
-/// of fourth-order Runge-Kutta is 2.78; the rest is margin.)
+/// Physics steps are explicit: a motion with a higher decay rate per tick would grow instead. (The
+/// limit of fourth-order Runge-Kutta is 2.78; the rest is margin.)
 pub(super) const FASTEST_PER_TICK: f64 = 2.0;
 /// The tick for checking a boat file without a game, s.
 const USUAL_TICK_S: f64 = 0.05;
@@ -98,8 +98,7 @@ fn check_gps(document: &Document<raw::Boat>, gps: &Gps) {
     }
 }
 
-/// The hull, with estimates of the values that the file omits, by the formulas in the keys'
-/// descriptions.
+/// The hull, with omitted values estimated by the formulas in the descriptions of the keys.
 fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
     let (thrust_max_newton, speed_max_m_s) = match drive {
         Drive::Thrusters {
@@ -116,7 +115,7 @@ fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
     let (mass_kg, x_g_m) = (hull.mass_kg, hull.x_g_m);
     let surge_quadratic_kg_m = hull.surge_quadratic_kg_m;
     // A radius of gyration of a quarter of the length, shifted from the centre of gravity to
-    // midships.
+    // amidships.
     let estimate_kg_m2 = || mass_kg * (length_m * length_m / 16.0 + x_g_m * x_g_m);
     let yaw_inertia_kg_m2 = hull.yaw_inertia_kg_m2.unwrap_or_else(estimate_kg_m2);
     let added_sway_kg = hull.added_sway_kg.unwrap_or(mass_kg);
@@ -153,7 +152,7 @@ fn hull(raw: &raw::Boat, drive: &Drive) -> Hull {
     }
 }
 
-/// The windage, with estimates like those of the hull.
+/// The windage, with estimates as for the hull.
 fn windage(raw: &raw::Boat) -> Windage {
     let windage = &raw.windage;
     let length_m = raw.length_m;
@@ -170,7 +169,7 @@ fn windage(raw: &raw::Boat) -> Windage {
     }
 }
 
-/// A singular mass matrix would give unbounded acceleration.
+/// Checks the mass matrix: if singular, acceleration would be unbounded.
 fn check_inertia(document: &Document<raw::Boat>, boat: &Boat) {
     let hull = &boat.hull;
     let m = hull.mass_kg;
@@ -198,7 +197,7 @@ fn check_inertia(document: &Document<raw::Boat>, boat: &Boat) {
     }
 }
 
-/// The default tick must be short enough for the boat.
+/// Checks that the default tick is short enough for the boat.
 fn check_decay(document: &Document<raw::Boat>, boat: &Boat) {
     let (motion, rate_per_s) = fastest_decay(boat);
     let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
@@ -217,8 +216,8 @@ fn check_decay(document: &Document<raw::Boat>, boat: &Boat) {
     }
 }
 
-/// The motion with the fastest decay and its rate, 1/s, at top speed, 1 m/s of drift and 1 rad/s of
-/// turn.
+/// The motion with the fastest decay, and its rate (1/s) at top speed, 1 m/s of drift and 1 rad/s
+/// of turn.
 pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
     let hull = &boat.hull;
     let u_m_s = boat.speed_max_m_s();

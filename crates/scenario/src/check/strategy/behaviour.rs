@@ -1,5 +1,5 @@
-//! Checks behaviours: values already satisfy their types' declarations; names and expressions are
-//! resolved.
+//! Checks behaviours: resolves names and expressions; values already satisfy the declarations of
+//! their types.
 
 use super::scope::Scope;
 use super::variable::set;
@@ -104,7 +104,7 @@ fn one(scope: &Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> O
     })
 }
 
-/// The keys of a table with their checked values; faults are reported and left out.
+/// The keys of a table with their checked values; faults are reported and omitted.
 fn checked_table(
     scope: &Scope<'_>,
     path: &str,
@@ -120,7 +120,7 @@ fn checked_table(
     table
 }
 
-/// The checked value at `path`; `about` is the schema of the typed value.
+/// The checked value at `path`; `about` is the schema of the value as typed.
 fn checked(scope: &Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
     let value = match (about["title"].as_str(), given) {
         (Some("a number or an expression"), _) => {
@@ -185,7 +185,7 @@ fn shape(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<
     }
 }
 
-/// The variable that receives a policy's options, if it has any.
+/// The variable that receives a policy's option, if it has options.
 fn sets(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<u16>> {
     let Some(Json::String(name)) = keys.remove("sets") else {
         return Some(None);
@@ -206,7 +206,7 @@ fn sets(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<O
     }
 }
 
-/// The reason why a model does not fit a policy that sets this variable, if any.
+/// The reason why a model does not suit a policy that sets this variable, if any.
 fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
     let has_options = model.spec.action == ActionSpace::Options;
     let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
@@ -276,7 +276,7 @@ fn host(
     }
     let found = scope.document.resolve(&format!("{path}.host"), &host);
     let files = &scope.document.loader.files;
-    // Stored texts are another process's, whose paths this one must not run.
+    // Stored files come from a different process, whose paths this one must not run.
     let is_allowed = !files.is_stored();
     if is_allowed && !found.join("solution.py").is_file() && !found.is_file() {
         let expected = "expected a folder with solution.py, or that file";
@@ -358,7 +358,7 @@ fn in_modes(scope: &Scope<'_>, path: &str, modes: &[Mode], given: Option<&[Json]
             }
         }
     }
-    // Parents precede their parts.
+    // Parents precede their children.
     for (i, mode) in modes.iter().enumerate() {
         allowed[i] |= mode.parent.is_some_and(|parent| allowed[parent]);
     }

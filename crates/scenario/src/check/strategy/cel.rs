@@ -1,4 +1,4 @@
-//! Parses expressions as CEL, with the place of every part in the file.
+//! Parses expressions as CEL, recording the place of every part in the file.
 
 use crate::diagnostics::Diagnostics;
 use cel::common::ast::{IdedExpr, SourceInfo};
@@ -42,8 +42,8 @@ pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str)
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {
-            // The parser reports the places of parts only for invalid syntax: a surplus bracket
-            // makes it invalid.
+            // The parser reports the places of parts only for invalid syntax, which a surplus
+            // bracket causes.
             let places = parser().parse(&format!("{text}\n)")).err();
             let errors = places.into_iter().flat_map(|errors| errors.errors);
             let places = errors.filter_map(|error| error.source_info).next();
@@ -74,7 +74,7 @@ fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     start + byte.unwrap_or(rest.len())
 }
 
-/// The parser's error in the terms of these files; `rest` is the expression from the error on.
+/// The parser's error in the terms of these files; `rest` is the expression from the error onwards.
 fn complaint(message: &str, rest: &str) -> String {
     if message.contains("recursion limit") {
         return format!("is nested too deeply, expected at most {DEEPEST} levels of brackets");
@@ -124,8 +124,8 @@ fn token(rest: &str) -> &str {
     &rest[..end]
 }
 
-/// The offset of each byte of a string value, and of its end, if the value as written begins
-/// `source`, at `start`.
+/// The offset of each byte of a string value, and of its end; the value as written is at the
+/// beginning of `source`, at `start`.
 fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
     let mut quotes = ["\"\"\"", "'''", "\"", "'"].into_iter();
     let opening = quotes.find(|quotes| source.starts_with(quotes));
@@ -141,7 +141,8 @@ fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
     let mut offsets = vec![];
     for c in value.chars() {
         let mut rest = source.get(at..).unwrap_or_default();
-        // A backslash at the end of a line and the following white space are not part of the value.
+        // A backslash at the end of a line, and the white space after it, are not part of the
+        // value.
         let continued = |escape: &&str| has_escapes && escape.starts_with(char::is_whitespace);
         while let Some(escape) = rest.strip_prefix('\\').filter(continued) {
             rest = escape.trim_start();

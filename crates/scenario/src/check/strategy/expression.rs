@@ -12,7 +12,7 @@ const RESERVED: &str = "as break const continue else false for function if impor
 /// Names of functions other than measures.
 pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
 
-/// A part of an expression, and its kind. The kind of a constant text has that text as its only
+/// A part of an expression, and its kind. The kind of a constant string has that string as its only
 /// value.
 type Read = (Expression, Kind);
 
@@ -197,7 +197,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A measure; reports other calls.
+    /// A measure; reports calls of other functions.
     fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
         let given = format!("passes {} arguments to {name}(), expected", arguments.len());
         let kind = |measure: Measure| Kind::of(measure.is_truth());
@@ -339,7 +339,7 @@ pub(super) fn is_reserved(name: &str) -> bool {
     RESERVED.split(' ').any(|word| word == name)
 }
 
-/// The index of a text among `values`, or a message with the allowed ones and a suggestion.
+/// The index of a string among `values`, or a message with the allowed values and a suggestion.
 pub(super) fn text_value(values: &[String], text: &str) -> Result<Expression, String> {
     let known: Vec<&str> = values.iter().map(String::as_str).collect();
     match known.iter().position(|value| *value == text) {

@@ -71,10 +71,10 @@ fn parent(scope: &Scope<'_>, before: &[Mode], mode: usize, parent: &str) -> Opti
     Some(found)
 }
 
-/// Every sibling but the last needs a condition; the last must not have one.
+/// Checks that every sibling except the last has a condition, and that the last has none.
 fn check_conditions(scope: &Scope<'_>, modes: &[Mode]) {
     let given = &scope.document.raw.mode;
-    // Undecidable with an unknown parent.
+    // This cannot be decided if the parent is unknown.
     let is_known = |mode: usize| given[mode].r#in.is_some() == modes[mode].parent.is_some();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| is_known(*i)) {
         let next = (i + 1..modes.len())

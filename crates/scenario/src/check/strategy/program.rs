@@ -26,7 +26,7 @@ pub(super) fn program(document: &Document<raw::Strategy>) -> Option<Program> {
     let rules = raw.rule.iter().enumerate();
     let rules = rules.map(|(i, given)| rule(&scope, i, given)).collect();
     safety::check_reason(&scope);
-    // Faults of a part may cause faults of the whole.
+    // Faults in a part may cause faults in the whole.
     if faults() > before || !document.is_sound("") {
         return None;
     }
@@ -46,7 +46,7 @@ pub(super) fn program(document: &Document<raw::Strategy>) -> Option<Program> {
     document.is_faultless().then_some(program)
 }
 
-/// Reports modes whose behaviours could exceed the helm's number of functions.
+/// Reports modes whose behaviours could exceed the helm's maximum number of functions.
 fn check_functions(scope: &Scope<'_>, program: &Program) {
     for leaf in program.leaves() {
         let most = |behaviour: &Behaviour| match behaviour.task {

@@ -1,19 +1,19 @@
 //! Detects unreachable modes by enumerating all cases that their conditions distinguish.
 //!
-//! A term is a fact, a variable, a measure or a count of mates. A number compared with constants
-//! gets one value for each constant and for each gap between constants. Other conditions, such as a
-//! comparison of two numbers, are terms that may be true or false. This overestimates the cases,
-//! never underestimates them.
+//! A term is a fact, a variable, a measure or a count of teammates. A number compared with
+//! constants gets one value for each constant and for each gap between constants. Other conditions,
+//! such as a comparison of two numbers, are terms that may be true or false. This overestimates the
+//! cases, never underestimates them.
 
 use super::scope::Scope;
 use crate::strategy::{Expression, Fact, Join, Kind, Measure, Program, Task};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum number of cases per mode; beyond it the mode counts as reachable.
+/// Maximum number of cases per mode; with more, the mode counts as reachable.
 const MOST_CASES: usize = 200_000;
-/// Maximum number of steps per program; beyond it the remaining modes count as reachable.
+/// Maximum number of steps per program; after these, the remaining modes count as reachable.
 const MOST_STEPS: usize = 50_000_000;
-/// Maximum number of terms per program; beyond it all modes count as reachable.
+/// Maximum number of terms per program; with more, all modes count as reachable.
 const MOST_TERMS: usize = u16::MAX as usize;
 
 /// Reports every unreachable mode, but not its children.
@@ -66,7 +66,7 @@ pub(super) fn check(scope: &Scope<'_>, program: &Program) {
     }
 }
 
-/// The restricted values of the variables in a mode's condition, in words.
+/// The restricted values of the variables in a mode's condition, as a string.
 fn only_ever(program: &Program, mode: usize) -> String {
     let mut asked = BTreeSet::new();
     let when = program.modes[mode].when.iter();
@@ -137,7 +137,7 @@ struct Terms<'a> {
 }
 
 impl Terms<'_> {
-    /// A condition with terms replaced by variables, by their index here; adds new terms.
+    /// A condition with terms replaced by variables, by their index in this list; adds new terms.
     fn formula(&mut self, condition: &Expression) -> Expression {
         if let Some(value) = condition.constant() {
             return Expression::Constant(value);
@@ -169,7 +169,7 @@ impl Terms<'_> {
         }
     }
 
-    /// Whether two truths are joined; a constant alone does not determine its kind.
+    /// Whether two Booleans are joined; a constant alone does not determine its kind.
     fn joins_truths(&self, join: Join, sides: &(Expression, Expression)) -> bool {
         let is_truth = |side| self.program.kind_of(side) == Kind::Truth;
         matches!(join, Join::And | Join::Or) || is_truth(&sides.0) || is_truth(&sides.1)
@@ -303,7 +303,7 @@ impl Search<'_> {
         false
     }
 
-    /// The value of a formula if the tried values determine it, otherwise a term to try. Counts
+    /// The value of a formula if the tried values determine it, otherwise a term to try. Counts the
     /// steps.
     fn value(&mut self, formula: &Expression) -> Result<f64, usize> {
         self.steps += 1;
@@ -317,7 +317,7 @@ impl Search<'_> {
                 let a = self.value(&sides.0);
                 let b = self.value(&sides.1);
                 match join {
-                    // One side may determine the value.
+                    // One side may be enough to determine the value.
                     Join::And if [a, b].contains(&Ok(0.0)) => Ok(0.0),
                     Join::Or if [a, b].contains(&Ok(1.0)) => Ok(1.0),
                     _ => Ok(join.of(a?, b?)),

@@ -1,5 +1,5 @@
 //! Mandatory safety: in every mode, behaviours keep boats on the field and away from other boats,
-//! or the file gives a reason why not.
+//! or the file gives a reason for the exception.
 
 use super::scope::Scope;
 use crate::strategy::{Behaviour, Contacts, Program, Task};
@@ -27,7 +27,8 @@ pub(super) fn check_reason(scope: &Scope<'_>) {
 }
 
 /// Reports every mode without safety behaviours, and an unnecessary reason. No other behaviour may
-/// outweigh a safety behaviour: constant weights are checked, expressions are limited at run time.
+/// outweigh a safety behaviour: constant weights are checked now, expressions are limited at run
+/// time.
 pub(super) fn check(scope: &Scope<'_>, program: &mut Program) {
     let is_unsafe = program.unsafe_because.is_some();
     let mut is_lacking = false;
@@ -64,8 +65,8 @@ pub(super) fn check(scope: &Scope<'_>, program: &mut Program) {
 /// Ensures that no behaviour outweighs a safety behaviour in a mode in which both run.
 fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
     for leaf in program.leaves().collect::<Vec<_>>() {
-        // A number can disable a guard: a weight below a goal's, a range of zero, a region wider
-        // than the field, or an expression with such a value. Guards therefore have constants
+        // A number can disable a guard: a weight below that of a goal, a range of zero, a region
+        // wider than the field, or an expression with such a value. Guards therefore have constants
         // within limits, and nothing outweighs them.
         let weight = |kind: &str| {
             let is_guard = |b: &&Behaviour| b.task.kind() == kind && b.modes[leaf] && b.is_guard();
@@ -94,7 +95,7 @@ fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
 
 impl Behaviour {
     /// Whether this is a safety behaviour that always works: for the whole field or all other
-    /// boats, without condition or end, with a weight and effective numbers.
+    /// boats, without a condition or an end, with a weight and effective numbers.
     pub fn is_guard(&self) -> bool {
         matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_))
             && self.no_guard_since().is_none()

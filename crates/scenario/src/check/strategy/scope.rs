@@ -27,7 +27,7 @@ impl<'a> Scope<'a> {
         variables.map(|variable| variable.name.as_str()).collect()
     }
 
-    /// Reports a fault of the value at `path`; the message is about its key.
+    /// Reports a fault of the value at `path`; the message refers to its key.
     pub(super) fn note(&self, path: &str, message: &str) {
         let message = format!("{} {message}", key_of(path));
         self.document.note(path, message);
@@ -39,7 +39,7 @@ impl<'a> Scope<'a> {
         None
     }
 
-    /// Reports a missing value at `path`, unless a value of another type is there.
+    /// Reports a missing value at `path`, unless there is a value of a different type.
     pub(super) fn note_missing(&self, path: &str, expected: &str) {
         self.document.note_missing(path, expected);
     }
@@ -57,7 +57,7 @@ impl<'a> Scope<'a> {
 
     /// The expression at `path`, if it is valid and of the kind `wanted`.
     pub(super) fn expression(&self, path: &str, text: &str, wanted: &Kind) -> Option<Expression> {
-        // A stand-in for a faulty value is not the user's text.
+        // The stand-in for a faulty value is not the user's input.
         let given = self.document.is_sound(path).then_some(text)?;
         let diagnostics = &self.document.loader.diagnostics;
         let at = self.document.at(path);

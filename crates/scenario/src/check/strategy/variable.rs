@@ -54,7 +54,7 @@ fn one(scope: &Scope<'_>, name: &str, given: &raw::Variable) -> Option<Variable>
     })
 }
 
-/// Whether a variable may have this name: a CEL identifier that is not in use.
+/// Whether a variable may have this name: it must be an unused CEL identifier.
 fn is_free(scope: &Scope<'_>, path: &str, name: &str) -> bool {
     if !scope.document.is_name(path, "variable", name) {
         return false;
@@ -117,7 +117,7 @@ fn kind_of(scope: &Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<
     }
 }
 
-/// The text at `path` as a value of a variable with these `values`.
+/// The string at `path` as a value of a variable with these `values`.
 fn text_at(scope: &Scope<'_>, path: &str, values: &[String], text: &str) -> Option<Expression> {
     let wrong = |allowed| scope.refuse(path, &format!("is {text:?}, {allowed}"));
     text_value(values, text).map_or_else(wrong, Some)

@@ -28,7 +28,7 @@ pub(super) struct EventLog {
 }
 
 impl EventLog {
-    /// A log that still lacks all earlier events.
+    /// A log without any events yet.
     pub(super) fn new() -> EventLog {
         EventLog {
             has_gap: true,
@@ -67,7 +67,7 @@ impl EventLog {
         asks
     }
 
-    /// Replaces all events up to a moment with those from the sim. Later events from frames stay.
+    /// Replaces all events up to a moment with those from the sim. Later events from frames remain.
     pub(super) fn replace(&mut self, mut all: Vec<EventOutcome>) {
         let last = all.last().map_or(0, |event| event.tick);
         let later = |event: &&EventOutcome| {

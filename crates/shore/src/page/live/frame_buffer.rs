@@ -1,4 +1,4 @@
-//! A buffer of frames: the newest one to show, and past ones for trails.
+//! A buffer of frames: the newest frame to show, and past frames for trails.
 
 use crate::page::view::{Outgoing, TRAIL_S, TRAIL_STEP_S};
 use messages::{Frame, Stamp};
@@ -11,7 +11,7 @@ const METER: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameBuffer {
-    /// The number of frames so far, and the number of the newest, counted from 1.
+    /// The number of frames so far, which is also the number of the newest, counted from 1.
     pub(super) count: u64,
     pub(super) stamp: Stamp,
     /// Whether the game is over.
@@ -47,8 +47,8 @@ impl FrameBuffer {
         {
             self.past.pop_front();
         }
-        // The sim's own bytes: the page decodes CDR by the `.msg` texts in the first message, so no
-        // second encoding can diverge.
+        // The sim's own bytes: the page decodes CDR with the `.msg` files in the first message, so
+        // no second encoding can diverge.
         (self.stamp, self.is_over, self.newest) =
             (frame.stamp, frame.over, Some(Outgoing::now(cdr)));
         (self.count, self.came) = (self.count + 1, Some(now));

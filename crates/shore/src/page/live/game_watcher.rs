@@ -1,5 +1,5 @@
 //! Finds the game, subscribes to its topics and publishes commands from pages. Searches again when
-//! the game has gone.
+//! the game has disappeared.
 
 use super::live_state::LiveGame;
 use super::query_thread::QueryThread;
@@ -23,14 +23,14 @@ use std::time::{Duration, Instant};
 
 /// Interval between searches for a missing game.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
-/// Interval of checks for timeouts.
+/// Interval between checks for timeouts.
 const ROUND: Duration = Duration::from_millis(50);
-/// After this many failed attempts the session is reopened, because it may be the cause.
+/// Number of failed attempts after which the session is reopened, because it may be the cause.
 const ATTEMPTS: u64 = 20;
 /// Maximum number of queued requests to the sim.
 const REQUESTS: usize = 16;
-/// How long a sim's token may be missing, at first or after a cut: a short interruption does not
-/// mean that the sim has gone.
+/// How long a sim's token may be missing, initially or after a link failure: a short interruption
+/// does not mean that the sim has gone.
 const PATIENCE: Patience = Patience {
     silence: Duration::from_secs(5),
     missing: Duration::from_secs(1),
@@ -63,7 +63,7 @@ impl GameWatcher {
         let mut said = String::new();
         let mut attempts = 0_u64;
         while !self.shared.is_closing() {
-            // Commands to a game that has gone must not reach the next one.
+            // Commands to a game that has ended must not reach the next one.
             while self.commands.take_now().is_some() {}
             match self.find(&mut session) {
                 Ok(found) => {
@@ -72,7 +72,8 @@ impl GameWatcher {
                     session = None;
                 }
                 Err(missing) => {
-                    // A permanent refusal may still end when another game takes this one's place.
+                    // A permanent refusal may still end when a different game takes this one's
+                    // place.
                     let reason = missing.to_string();
                     if reason != said {
                         (self.shared.tell)(&format!("no game to show: {reason}"));
@@ -93,7 +94,7 @@ impl GameWatcher {
     /// Connects to a game, if any. The session stays open for the next attempt.
     fn find(&self, session: &mut PlacedSession) -> Result<GameSession, Missing> {
         let (bus, name, info) = game_search::find_game(&self.place, self.game.as_ref(), session)?;
-        // Older sims do not reply; the water is then drawn flat.
+        // Older sims do not reply; then the water is drawn flat.
         let water = bus.ask(&topic::water(&name), Vec::new(), ANSWER)?;
         let water: Water = water
             .and_then(|bytes| serde_json::from_slice(&bytes).ok())
@@ -125,7 +126,7 @@ impl GameWatcher {
         let bus = session.bus.clone();
         let game = session.game.name.clone();
         let until = Arc::clone(&left);
-        // The sim may reply slowly, and a stop must not wait for that.
+        // The sim may reply slowly, and a stop must not wait for its reply.
         let request_thread =
             NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until)))
                 .inspect_err(no_thread);
@@ -244,7 +245,7 @@ impl GameSession {
         }
     }
 
-    /// Subscribes to the pictures of exactly those teams whose boats are selected.
+    /// Subscribes to the pictures of exactly the teams whose boats are selected.
     fn update_picture_subscriptions(&mut self, shared: &Arc<SharedState>) {
         let (wanted, generation) = {
             let mut state = shared.state.lock();

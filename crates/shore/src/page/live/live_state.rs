@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Without a frame for this long, a game whose sim publishes no run state counts as paused.
+/// Time without a frame after which a game whose sim publishes no run state counts as paused.
 const STILL: Duration = Duration::from_secs(2);
 
 /// The constant data of a game.
@@ -37,23 +37,23 @@ pub(super) struct LiveGame {
 #[derive(Clone, Debug)]
 pub(super) struct HelmMessage {
     pub(super) light: String,
-    /// With utilities, if any page wants them.
+    /// With utilities, if any page requests them.
     pub(super) full: Option<String>,
 }
 
-/// The latest item by vehicle. Viewers detect a new item by its address in memory.
+/// The latest item for each vehicle. Viewers detect a new item by its address in memory.
 pub(super) type Latest<T> = BTreeMap<VehicleId, Arc<T>>;
 
 /// The shared state.
 #[derive(Default)]
 pub(super) struct LiveState {
-    /// The game; kept after it has gone.
+    /// The game; kept after it has disappeared.
     pub(super) game: Option<Arc<LiveGame>>,
     /// The session, while the game is reachable.
     pub(super) bus: Option<Bus>,
     /// The number of games so far.
     pub(super) generation: u64,
-    /// Whether the game has gone.
+    /// Whether the game has disappeared.
     pub(super) is_gone: bool,
     /// Why there is no game to show; empty before the first search.
     pub(super) missing: String,
@@ -68,13 +68,13 @@ pub(super) struct LiveState {
     pub(super) statuses: Latest<GatewayStatus>,
     pub(super) operating: Operating,
     pub(super) steering_locks: SteeringLocks,
-    /// Set-points for steered boats: course, rad, and speed, m/s.
+    /// Set-points for steered boats: course (rad) and speed (m/s).
     pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
-    /// By page: the selected boat, and whether utilities are wanted.
+    /// By page: the selected boat, and whether utilities are requested.
     pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
-    /// The pages that want the modes of all boats.
+    /// The pages that request the modes of all boats.
     pub(super) listed: BTreeSet<u64>,
-    /// By vehicle: the mode that its helm last reported.
+    /// By vehicle: the mode that the helm last reported.
     pub(super) modes: Vec<Option<String>>,
     pub(super) modes_at_s: f64,
     /// Increases with each change of the modes.
@@ -102,7 +102,7 @@ impl LiveGame {
 }
 
 impl LiveState {
-    /// Starts another game. Clears selections, which belong to the previous one.
+    /// Starts a new game. Clears selections, which belong to the previous one.
     pub(super) fn begin(&mut self, game: Arc<LiveGame>) {
         *self = LiveState {
             game: Some(game),
@@ -113,7 +113,7 @@ impl LiveState {
         };
     }
 
-    /// The current game, or an error if it has gone.
+    /// The current game, or an error if it has disappeared.
     pub(super) fn on(&self) -> Result<Arc<LiveGame>, String> {
         let game = self.game.clone().filter(|_| !self.is_gone);
         game.ok_or_else(|| "the game is no longer running".to_owned())
@@ -196,7 +196,7 @@ impl LiveState {
         Ok(())
     }
 
-    /// The selected boats, and whether any page wants utilities.
+    /// The selected boats, and whether any page requests utilities.
     pub(super) fn wanted(&self) -> BTreeMap<VehicleId, bool> {
         let mut wanted = BTreeMap::new();
         for (vehicle, functions) in self.selected.values() {
@@ -205,7 +205,7 @@ impl LiveState {
         wanted
     }
 
-    /// The boats whose modes any page wants.
+    /// The boats whose modes any page requests.
     pub(super) fn listed(&self) -> Vec<VehicleId> {
         let count = self
             .game
@@ -230,7 +230,7 @@ impl LiveState {
         *known = mode;
     }
 
-    /// Drops data of boats that no page selects any more.
+    /// Drops data of boats that no page selects any longer.
     pub(super) fn forget_unwanted(&mut self) {
         let wanted = self.wanted();
         self.helms.retain(|vehicle, _| wanted.contains_key(vehicle));
@@ -256,7 +256,7 @@ impl LiveState {
     }
 }
 
-/// Whether a frame fits the game in time, boats, flags and teams.
+/// Whether a frame matches the game in time, boats, flags and teams.
 fn is_of(frame: &Frame, scenario: &Scenario) -> bool {
     (SimTime::ZERO..SimTime::NEVER).contains(&frame.stamp.valid_ns)
         && frame.vehicles.len() == scenario.vehicles.len()

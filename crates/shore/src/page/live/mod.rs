@@ -1,6 +1,6 @@
 //! A running game, shown to pages that may also control it.
 //!
-//! One thread finds the game, subscribes to it, and searches again when it has gone
+//! One thread finds the game, subscribes to it, and searches again when it has disappeared
 //! (`game_watcher`). Another queries data that are not published (`query_thread`). Both write the
 //! state that all viewers read (`live_state`). Stops have their own threads (`stopping`).
 
@@ -33,7 +33,7 @@ const COMMANDS_MAX: usize = 64;
 /// Reports a failure to a person, in one sentence.
 pub type Tell = Box<dyn Fn(&str) + Send + Sync>;
 
-/// Parses the text of a mission file. The error states what is wrong.
+/// Parses the contents of a mission file. The error states the fault.
 pub type ReadMission = fn(&str) -> Result<Mission, String>;
 
 /// A game on the network, shown to pages.
@@ -43,7 +43,7 @@ pub struct LiveView {
 
 /// The state shared by the threads and all viewers.
 struct SharedState {
-    /// Lock it only briefly.
+    /// Locked only briefly.
     state: Mutex<LiveState>,
     news: Changes,
     commands: InboxSender<Command>,
@@ -67,8 +67,8 @@ enum Command {
 
 impl LiveView {
     /// Searches for a game at `place` (the named one, or the only one running) until dropped.
-    /// `tell` receives what is missing, whenever that changes, and refusals from the sim.
-    /// `read_mission` parses operators' mission files.
+    /// `tell` receives a description of what is missing, whenever this changes, and refusals from
+    /// the sim. `read_mission` parses operators' mission files.
     ///
     /// # Errors
     /// If the system cannot start a thread.

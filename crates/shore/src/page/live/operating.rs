@@ -1,6 +1,6 @@
 //! Operator commands to the gateways of real boats. Each goes over the game's network in its own
-//! thread. Per boat, one command that needs the token and one that stops it can be in progress, so
-//! that no number of commands delays a stop.
+//! thread. For each boat, one command that needs the token and one that stops it can be in
+//! progress, so that no number of commands can delay a stop.
 
 use super::SharedState;
 use super::live_state::{LiveGame, LiveState};
@@ -12,7 +12,7 @@ use primitives::VehicleId;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// Maximum number of replies queued for a page; a page that does not read misses some.
+/// Maximum number of replies queued for a page; a page that does not read them misses some.
 const REPLIES_MAX: usize = 16;
 
 /// The result of a command.
@@ -20,7 +20,7 @@ const REPLIES_MAX: usize = 16;
 pub(super) struct Operated {
     pub(super) vehicle: VehicleId,
     pub(super) command: &'static str,
-    /// Why it was refused.
+    /// The reason if it was refused.
     pub(super) refused: Option<String>,
 }
 
@@ -39,12 +39,12 @@ impl Operating {
         self.replies.get_mut(&page)?.pop_front()
     }
 
-    /// Forgets a page that has left.
+    /// Forgets a page that has disconnected.
     pub(super) fn forget(&mut self, page: u64) {
         self.replies.remove(&page);
     }
 
-    /// Starts a command, unless one of its kind is in progress for the same boat.
+    /// Starts a command unless a command of the same kind is in progress for the boat.
     fn begin(
         &mut self,
         page: u64,
@@ -94,7 +94,7 @@ pub(super) fn operate(
         return Err("the game is no longer running".to_owned());
     };
     state.operating.begin(page, vehicle, &command)?;
-    // A stop takes every path, and this query is one of them. The latest command counts.
+    // A stop uses every path, of which this query is one. The latest command counts.
     let stop = StopCommand::of(&command);
     match stop {
         Some(stop) => shared.stops.stop(Some(name), stop),
@@ -122,7 +122,7 @@ pub(super) fn operate(
                     state.statuses.insert(vehicle, Arc::new(status));
                     refused
                 }
-                // The boat's status shows that the command arrived by another path.
+                // The boat's status shows that the command arrived on a different path.
                 Err(_)
                     if stop.is_some_and(|stop| {
                         at_work.stops.visit(|orders| orders.is_shown(&named, stop))

@@ -1,4 +1,4 @@
-//! Queries unpublished data from a game in its own thread, because replies take time.
+//! Queries unpublished data of a game in its own thread, because replies take time.
 
 use super::SharedState;
 use super::live_state::{HelmMessage, LiveGame};
@@ -14,17 +14,17 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Interval of checks for pending queries.
+/// Interval between checks for pending queries.
 const ROUND: Duration = Duration::from_millis(50);
-/// Timeout of a helm's reply.
+/// Timeout for a helm's reply.
 const HELM_ANSWER: Duration = Duration::from_secs(1);
-/// Selected helms may spend one part in this many of the time on replies.
+/// Reciprocal of the maximum share of time that selected helms spend on replies.
 const SHARE: u32 = 5;
-/// The same for helms whose mode alone is wanted, for a list of all boats.
+/// The same for helms of which only the mode is needed, for a list of all boats.
 const LIST_SHARE: u32 = 20;
 /// Interval between queries for a helm's mode.
 const LIST_INTERVAL: Duration = Duration::from_secs(2);
-/// Timeout of the sim's list of events.
+/// Timeout for the sim's list of events.
 const EVENTS_ANSWER: Duration = Duration::from_secs(3);
 
 /// Queries one game.
@@ -38,7 +38,7 @@ pub(super) struct QueryThread {
 struct QuerySchedule {
     /// When each helm was last queried, and whether with utilities.
     asked: BTreeMap<VehicleId, (Instant, bool)>,
-    /// No helm is queried before this time.
+    /// Time before which no helm is queried.
     rest: Option<Instant>,
 }
 
@@ -47,13 +47,13 @@ struct Turn {
     vehicle: VehicleId,
     /// Whether to include utilities.
     functions: bool,
-    /// Whether only the mode is wanted, for a boat that no page selects.
+    /// Whether only the mode is needed, for a boat that no page selects.
     is_listed: bool,
 }
 
 impl QuerySchedule {
     /// The helm to query now, if any: the one that has waited longest. Selected helms precede those
-    /// of which only the mode is wanted.
+    /// of which only the mode is needed.
     fn next(
         &mut self,
         wanted: &BTreeMap<VehicleId, bool>,
@@ -96,8 +96,8 @@ impl QuerySchedule {
     }
 
     /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
-    /// process may run all minds, so after a long reply none is queried for a while. A paused game
-    /// waits for no mind.
+    /// process may run all minds, so after a long reply no helm is queried for some time. A paused
+    /// game waits for no mind.
     fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(turn.vehicle, (start, turn.functions));
         let share = if turn.is_listed { LIST_SHARE } else { SHARE };
@@ -139,7 +139,7 @@ impl QueryThread {
         let answer = self
             .bus
             .ask(&topic::events(&self.game.name), Vec::new(), EVENTS_ANSWER);
-        // Older sims do not reply; the log then has only events from frames.
+        // Older sims do not reply; then the log contains only events from frames.
         let events = answer
             .ok()
             .flatten()
@@ -186,7 +186,7 @@ impl QueryThread {
             self.shared.news.send_replace(());
             return;
         }
-        // Encoding a full report takes long, so the state is unlocked meanwhile.
+        // Encoding a full report takes long, so unlock the state meanwhile.
         let full =
             functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
@@ -313,7 +313,7 @@ mod tests {
             |all: &[(VehicleId, u64)], boat| all.iter().filter(|(asked, _)| *asked == boat).count();
         let quick = asked((&wanted, &BOATS), 0, 4000, true);
         assert_eq!(BOATS.map(|boat| of(&quick, boat)), [40, 2, 2], "{quick:?}");
-        // With no boat selected: a twentieth of the time, each in turn.
+        // With no boat selected: a twentieth of the time, each helm in turn.
         let slow = asked((&BTreeMap::new(), &BOATS), 100, 12_000, true);
         assert_eq!(slow.len(), 6, "{slow:?}");
         assert_eq!(BOATS.map(|boat| of(&slow, boat)), [2, 2, 2]);

@@ -4,10 +4,10 @@ use primitives::VehicleId;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// A page silent for this long loses its locks.
+/// Silence after which a page loses its locks.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// By boat: the page that steers it, and the page's last confirmation.
+/// By boat: the page that steers it, and when the page last confirmed its lock.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SteeringLocks(BTreeMap<VehicleId, (u64, Instant)>);
 
@@ -36,7 +36,7 @@ impl SteeringLocks {
         self.0.retain(|_, (holder, _)| *holder != page);
     }
 
-    /// Releases the boats of silent pages. Returns whether there were any.
+    /// Releases the boats of silent pages. Returns whether any were released.
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let before = self.0.len();
         self.0

@@ -13,10 +13,10 @@ use std::time::Duration;
 
 /// Maximum number of concurrent threads; each ends within seconds.
 const THREADS_MAX: usize = 256;
-/// Interval of checks whether the view closes.
+/// Interval between checks whether the view is closing.
 const ROUND: Duration = Duration::from_millis(500);
 
-/// Stops boats. Gateways are reachable even without a game.
+/// Stops boats. Gateways can be reached even without a game.
 pub(super) fn stop(
     shared: &Arc<SharedState>,
     state: &LiveState,

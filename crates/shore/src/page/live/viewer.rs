@@ -20,8 +20,8 @@ pub(super) struct PageViewer {
     shared: Arc<SharedState>,
     access: Access,
     page: u64,
-    /// The selected boat, and whether utilities are wanted. Kept for the next game if it has that
-    /// boat.
+    /// The selected boat, and whether utilities are requested. Kept for the next game if it has a
+    /// boat of this name.
     selection: Option<(String, bool)>,
     wants_modes: bool,
     sent: Sent,
@@ -243,7 +243,7 @@ impl Viewer for PageViewer {
                 generation: state.generation,
                 ..Sent::default()
             };
-            // This game may not have the boat; the page then selects another.
+            // This game may not have the boat; then the page selects a different one.
             drop(state.select(self.page, self.selection.as_ref()));
             if self.wants_modes {
                 state.listed.insert(self.page);

@@ -9,7 +9,7 @@ use recording::Recording;
 use rules::Field;
 use std::sync::Arc;
 
-/// Maximum number of samples per boat sent to a page: more than a screen has pixels.
+/// Maximum number of samples per boat sent to a page; a screen has fewer pixels.
 const SAMPLES: usize = 1500;
 /// Maximum number of samples kept for all boats together, about 160 bytes each.
 const SAMPLES_MAX: usize = 400_000;
@@ -22,7 +22,7 @@ pub(super) struct Plotter {
 }
 
 impl Plotter {
-    /// A plotter for this recording; reads nothing yet.
+    /// A plotter for this recording, which has not yet been read.
     pub(super) fn new(recording: Arc<Recording>) -> Plotter {
         Plotter {
             recording: Some(recording),
@@ -101,7 +101,7 @@ fn boat_curves(series: &GameSeries, field: &Field, vehicle: VehicleId) -> BoatCu
     }
 }
 
-/// A boat's distance to the nearest flag of another team, which may be moving.
+/// A boat's distance to the nearest flag of the other team, which may be moving.
 fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec<f64> {
     let boat = &series.boats[vehicle.index()];
     let mut carriers: Vec<Option<VehicleId>> = vec![None; field.flags.len()];
@@ -137,7 +137,7 @@ fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec
     distances
 }
 
-/// Rounds to millimetres: enough for a plot, and a short message.
+/// Rounds to millimetres: precise enough for a plot, and short in a message.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }

@@ -11,7 +11,7 @@ pub(super) struct Playback {
     from: SimTime,
     to: SimTime,
     at: SimTime,
-    /// Since when `at` has been advancing, if it is.
+    /// When `at` began to advance; `None` while paused.
     since: Option<Instant>,
     /// The speed, simulated seconds per second.
     pub(super) speed: f64,
@@ -43,7 +43,7 @@ impl Playback {
         self.since.is_some()
     }
 
-    /// When a moment will be shown without further commands; `None` if never.
+    /// When a moment will be shown without further commands; `None` means never.
     pub(super) fn when(&self, moment: SimTime) -> Option<Instant> {
         let ahead_s = (moment - self.at).as_s().max(0.0) / self.speed;
         self.since?
@@ -76,13 +76,13 @@ impl Playback {
         ends
     }
 
-    /// Jumps to a moment and keeps playing or pausing.
+    /// Jumps to a moment; continues playing, or stays paused.
     pub(super) fn seek(&mut self, moment: SimTime, now: Instant) {
         self.at = moment.clamp(self.from, self.to.max(self.from));
         self.since = self.since.map(|_| now);
     }
 
-    /// Sets the speed, simulated seconds per second; `None` for the fastest.
+    /// Sets the speed, simulated seconds per second; `None` means the maximum.
     pub(super) fn set_speed(&mut self, speed: Option<f64>, now: Instant) {
         self.at = self.at(now);
         self.since = self.since.map(|_| now);

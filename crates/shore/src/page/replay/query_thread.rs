@@ -1,5 +1,5 @@
-//! A thread that computes replay data missing from frames: helm reports, modes, curves. It may take
-//! a while.
+//! A thread that computes replay data missing from frames: helm reports, modes, curves. This may
+//! take a while.
 
 use super::curves::Plotter;
 use crate::page::message::{PageMessage, seconds};
@@ -40,7 +40,7 @@ pub(super) struct HelmRequest {
     pub(super) functions: bool,
 }
 
-/// A viewer and a kind of query, of which it has at most one at a time.
+/// A viewer and a kind of query. Each viewer has at most one query of each kind at a time.
 type Asker = (u64, u8);
 
 impl Query {
@@ -60,7 +60,7 @@ struct Queue {
     answers: BTreeMap<Asker, (Query, String)>,
     /// The viewer and kind of the query in progress, unless the viewer has left.
     current: Option<Asker>,
-    /// The last viewer served, so that each gets its turn.
+    /// The viewer served last, so that each viewer gets its turn.
     last: Asker,
     is_closed: bool,
 }
@@ -80,7 +80,7 @@ impl QueryThread {
         let counter = Arc::new(Watched::<Queue>::default());
         let server = Arc::clone(&counter);
         let serve = move || serve(&server, sources, &news);
-        // Without a thread no query is answered, and pages show that.
+        // Without a thread no query is answered, and pages show this.
         drop(
             std::thread::Builder::new()
                 .name("page-queries".to_owned())
@@ -203,7 +203,7 @@ mod tests {
     use crate::page::rose::tests::scenario;
     use std::sync::mpsc::{Receiver, Sender, channel};
 
-    /// Helms that signal their start and wait for permission to continue.
+    /// Helms that signal when they start and then wait for permission to continue.
     struct SlowHelms(Sender<()>, Receiver<()>);
 
     impl Helms for SlowHelms {
@@ -244,7 +244,7 @@ mod tests {
             }
             go.send(()).unwrap();
         }
-        // The third starts only after the second was handed out.
+        // The third starts only after the second was returned.
         let kept: Vec<u64> = thread.0.visit(|queue| {
             queue
                 .answers

@@ -19,9 +19,9 @@ pub struct Recorded {
     pub frame_times: Vec<SimTime>,
     /// The number of skipped frames.
     pub damaged: Damaged,
-    /// By team: time and location of every picture.
+    /// By team: time and location of each picture.
     pictures: Vec<Vec<(SimTime, usize)>>,
-    /// By vehicle: the same for every status from its gateway.
+    /// By vehicle: time and location of each status from its gateway.
     statuses: Vec<Vec<(SimTime, usize)>>,
     /// The chance of winning over time, if known: times, chances, bounds and turning points.
     pub chances: Option<Value>,
@@ -130,7 +130,7 @@ impl Recorded {
     }
 }
 
-/// The location of the last item up to `at`.
+/// The location of the last item at or before `at`.
 fn last_until(sent: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
     let after = sent.partition_point(|(when, _)| *when <= at);
     sent[..after].last().map(|(_, place)| *place)

@@ -17,7 +17,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The bytes of a frame that hold its decision number: after the encapsulation and the time.
+/// The bytes of a frame that contain its decision number: after the encapsulation and the time.
 const DECISION: std::ops::Range<usize> = 12..20;
 /// Minimum interval between frames at any playback speed.
 const FRAME_AGAIN: Duration = Duration::from_millis(10);
@@ -36,11 +36,11 @@ pub(super) struct PageViewer {
     selected: Option<(VehicleId, bool)>,
     requested: Option<(HelmRequest, Instant)>,
     estimated: Option<(usize, Instant)>,
-    /// Whether the modes of all boats are wanted; the decision for which they were last requested,
-    /// and when.
+    /// Whether the modes of all boats are requested; the decision for which they were last
+    /// requested, and when.
     wants_modes: bool,
     requested_modes: Option<(u64, Instant)>,
-    /// The real boats, each with the status last sent.
+    /// The real boats, each with the last status sent.
     gateways: Vec<(VehicleId, Option<GatewayStatus>)>,
     /// The frame for which statuses were last read, and when.
     looked: Option<(usize, Instant)>,
@@ -92,7 +92,7 @@ impl PageViewer {
         }
     }
 
-    /// The frame to show at a moment: the last one up to it.
+    /// The frame to show at a moment: the last one at or before it.
     fn frame_at(&self, moment: SimTime) -> Option<usize> {
         let times = &self.shared.source.frame_times;
         let after = times.partition_point(|time| *time <= moment);
@@ -295,7 +295,7 @@ impl PageViewer {
         self.statuses.pop_front().map(Outgoing::Text)
     }
 
-    /// The next past frame for trails, or the current frame if it is not shown yet.
+    /// The next past frame for trails, or the current frame if not yet shown.
     fn next_frame(&mut self, now: Instant) -> Option<Outgoing> {
         let frame = self.frame_at(self.playback.at(now))?;
         if self.shown == Some(frame) {
@@ -413,7 +413,7 @@ impl Viewer for PageViewer {
             .as_ref()
             .filter(|_| playing)
             .map(|(_, at)| *at + SEND_INTERVAL);
-        // Messages delayed because the same kind was sent shortly before.
+        // Messages delayed because one of the same kind was sent shortly before.
         let is_old = |frame: usize| self.shown.is_some_and(|shown| shown != frame);
         let selected = self.selected.is_some();
         let estimate = self
