@@ -10,7 +10,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-/// The moment from which futures differ, s.
+/// The time from which futures differ, s.
 const UNTIL_S: f64 = 5.0;
 
 fn strategy(name: &str) -> Box<Strategy> {
@@ -134,7 +134,7 @@ fn changed_boats_follow_another_strategy_from_the_moment_on() {
     assert_ne!(first[0].digest, first[1].digest);
 }
 
-/// The report from few futures of the game.
+/// The report from a few futures of the game.
 fn development(past: &Past, baseline: &str, threads: usize) -> Report {
     let plan = Plan {
         futures: 60,
