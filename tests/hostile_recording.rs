@@ -92,7 +92,7 @@ fn bytes_of_game(scenario: Scenario, decisions: Vec<Decision>) -> Vec<u8> {
         .into_inner()
 }
 
-/// Numbers that a sim never sends.
+/// Numbers that are never sent by a sim.
 fn odd_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         any::<f64>(),
@@ -148,7 +148,7 @@ fn odd_input() -> impl Strategy<Value = Input> {
 }
 
 prop_compose! {
-    /// A decision that no sim would send: other numbers of boats, flags and teams, any time, any
+    /// A decision that no sim would send: any numbers of boats, flags and teams, any time, any
     /// event.
     fn odd_decision()(
         (at, seq) in prop_oneof![(any::<i64>(), any::<u64>()), (0..5_i64, 0..5_u64)],
@@ -228,7 +228,8 @@ proptest! {
         }
     }
 
-    /// A file as a power cut may leave it: its length is written, but some blocks are not.
+    /// A file in a state that a power cut may leave: its length is written, but some blocks are
+    /// not.
     #[test]
     fn files_with_zeros_never_panic(
         decisions in proptest::collection::vec(odd_decision(), 0..5),

@@ -26,8 +26,8 @@ fn pose_after(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
     world.state().boats[0].pose
 }
 
-/// The reduction of the error with each halving of the tick from 100 ms to 12.5 ms, in position and
-/// heading.
+/// The factor by which the error shrinks with each halving of the tick from 100 ms to 12.5 ms, in
+/// position and heading.
 fn gains(change: impl Fn(&mut Sea)) -> Vec<[f64; 2]> {
     let truth = pose_after(0.001_25, &change);
     let errors = [0.1, 0.05, 0.025, 0.0125].map(|tick_s| {

@@ -1,7 +1,7 @@
 //! Heap allocations of a step (none unless hulls are close, and then none that persist) and of a
 //! decision with radio links and limits on sharing (none once queues have grown).
 //!
-//! `stats_alloc` counts them: it has a hundred lines, is safe to use, and avoids an `unsafe`
+//! `stats_alloc` counts them: it has a hundred lines, is safe to use, and saves us an `unsafe`
 //! allocator of our own. It counts the whole process, so this file has a single test.
 
 mod common;
@@ -136,7 +136,7 @@ fn a_decision_over_the_air_takes_nothing_unless_hulls_are_close_or_something_hap
         }
         contest.advance();
         let used = heap.change();
-        // The event log grows from time to time.
+        // The event log grows occasionally.
         if crowded || contest.events().len() > events || decision < WARM_UP_DECISIONS {
             busy += 1;
         } else {

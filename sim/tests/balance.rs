@@ -40,8 +40,8 @@ fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
     })
 }
 
-/// A boat of this kind after `minutes` in this wind from the north, without thrust, from rest on a
-/// heading.
+/// A boat from this file after `minutes` in this wind from the north, without thrust, starting from
+/// rest on a given heading.
 fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -> (f64, Planar) {
     let mut scenario = alone(kind, "calm");
     scenario.sea.wind = Some(blowing(wind_m_s));
@@ -108,7 +108,7 @@ struct Accounts {
 }
 
 impl Accounts {
-    /// A boat of this kind at rest in this water, with this current.
+    /// A boat from this file at rest in this water, with this current.
     fn of(kind: &str, tick_s: f64, current_m_s: Ned, order: Order) -> Accounts {
         let mut scenario = alone(kind, "calm_salt");
         scenario.sea.current.mean_m_s = current_m_s;
@@ -139,7 +139,7 @@ impl Accounts {
         common::hulls(&self.scenario)[0].energy_joule(self.through_water())
     }
 
-    /// Power from the thrusters, and power lost to resistance strip by strip, W.
+    /// Power from the thrusters, and power lost to resistance, strip by strip, W.
     fn powers_watt(&self) -> (f64, f64) {
         let boat = self.world.state().boats[0];
         let kind = &self.scenario.boats[0];
@@ -193,7 +193,7 @@ const ORDERS: [Order; 3] = [
 
 #[test]
 fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
-    // From rest, then under another order, in still water and in a current, where motion through
+    // From rest, then with a second order, in still water and in a current, where motion through
     // the water counts. Integrals by Simpson's rule over pairs of ticks, which are short because
     // shafts respond quickly. The Surveyor's Munk factor is not 1.
     const TICK_S: f64 = 0.005;

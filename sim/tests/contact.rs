@@ -131,8 +131,8 @@ fn no_collision_makes_energy() {
     }
 }
 
-/// Drives the boat for half a minute. Returns its capsule's deepest penetration of the obstacle's
-/// outline, m, and its position.
+/// Drives the boat for half a minute. Returns the deepest penetration of its capsule into the
+/// obstacle's outline (m), and its position.
 fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     let scenario = among("surveyor_m1_8", vec![obstacle.clone()]);
     let mut world = afloat(&scenario, 1, start, (2.5, 0.0, 0.0));
@@ -195,8 +195,8 @@ fn a_boat_stops_in_the_bay_of_a_mole() {
     let mole = Obstacle::Polygon {
         corners: corners.collect(),
     };
-    // Into the bay, as far as its end; not into the end of an arm; from behind and from the side,
-    // not at all.
+    // Into the bay, as far as its end; no penetration into the end of an arm, or from behind or the
+    // side.
     for (start, east_m, north_m) in [
         ((90.0, 100.0, 90.0), (108.9, 109.2), (97.0, 103.0)),
         ((90.0, 104.0, 90.0), (98.0, 130.0), (103.0, 130.0)),
@@ -248,7 +248,7 @@ fn boats_stay_inside_of_walls() {
     }
 }
 
-/// Boats in a dense crowd: each steers for the middle of the fleet, or past it.
+/// Boats in a dense crowd: each steers for the middle of the fleet or past it.
 fn crowd(world: &World, orders: &mut Vec<Order>) {
     let boats = &world.state().boats;
     let sum = boats

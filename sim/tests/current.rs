@@ -18,7 +18,7 @@ fn model(current: &Current, seed: u64) -> CurrentField {
     CurrentField::new(current, &field(), &seed.into())
 }
 
-/// The velocity at a place and a time, s.
+/// The velocity at a place and a time (s).
 fn at(model: &CurrentField, place: Ned, time_s: f64) -> Ned {
     model.at_time(SimTime::from_s(time_s)).at(place)
 }

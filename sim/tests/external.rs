@@ -13,7 +13,7 @@ use rules::{Event, TaggedBoat};
 use scenario::Scenario;
 use sim::{BadReport, Contest};
 
-/// A real boat, and a simulated one of the other team.
+/// A real boat, and a simulated one of the opposing team.
 const REAL: VehicleId = VehicleId(0);
 const OTHER: VehicleId = VehicleId(1);
 
@@ -281,12 +281,12 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
         ..nav(50.0, 40.0, 0.0, u)
     };
     contest.advance();
-    // Taken 0.1 s ago and delayed since.
+    // Taken 0.1 s ago and delayed since then.
     let fix_at = contest.now() - SimTime::from_s(0.1);
     contest
         .report(REAL, fix, fix_at, true)
         .expect("the report is valid");
-    // No simulated radio between it and its mind.
+    // There is no simulated radio between the boat and its mind.
     order(
         &mut contest,
         REAL,

@@ -52,7 +52,7 @@ fn speed_m_s(contest: &Contest, vehicle: VehicleId) -> f64 {
     contest.world().state().boats[vehicle.index()].nu.surge
 }
 
-/// Errors of a boat's reported position, m, and of its compass heading, rad.
+/// Errors of a boat's reported position (m) and of its compass heading (rad).
 fn errors(contest: &Contest, vehicle: VehicleId) -> (f64, f64) {
     let pose = contest.world().state().boats[vehicle.index()].pose;
     let nav = contest

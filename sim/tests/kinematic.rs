@@ -97,7 +97,7 @@ fn north(speed_m_s: f64) -> Order {
     steer(0.0, speed_m_s)
 }
 
-/// The first time at which `holds` is true, s.
+/// The first time at which `holds` returns true, s.
 fn first(rows: &[Row], holds: impl Fn(&Row) -> bool) -> f64 {
     rows.iter()
         .find(|row| holds(row))

@@ -115,7 +115,7 @@ fn orders_sent_beyond_the_range_do_not_arrive() {
     let mut outside = 0;
     let mut want = Order::Hold;
     for k in 0..400_u32 {
-        // East, and the decision at which it was given.
+        // A heading to the east, and the decision at which the order was given.
         let heading_rad = std::f64::consts::FRAC_PI_2;
         let order = Order::Steer {
             heading_rad,
@@ -143,7 +143,7 @@ fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
     };
     let silence = 200..300;
     let loquacity = 600..700;
-    // What arrived, by decision: orders in force, and when the known reports were sent.
+    // Arrivals by decision: orders in force, and the times at which the known reports were sent.
     let record = |says: &dyn Fn(u64) -> u32| {
         let mut contest = started(&over(link.clone()));
         let mut told = vec![];
@@ -266,7 +266,7 @@ fn a_watchdog_stops_the_thrusters_when_the_link_is_silent_and_the_next_order_sta
         running = if got == Order::Hold { 0 } else { running + 1 };
         let newton = contest.world().state().boats[0].port.newton;
         if k - last >= 15 {
-            // What remains after the thruster's lag.
+            // The remainder after the thruster's lag.
             assert!(
                 newton < 0.95 * before_newton || newton < 1e-3,
                 "decision {k}: {newton} N after {before_newton} N"

@@ -110,8 +110,9 @@ fn from_rest(n_rad_s: [f64; 2], seconds: u32) -> (Vec<[f64; 3]>, World) {
 
 #[test]
 fn it_takes_up_speed_as_its_mass_resistance_and_shafts_say() {
-    // Shaft speeds follow 1 − e^(−t / 0.1 s), thrust is its square, and (m + A11) u' = thrust − d u
-    // is linear. The steady speeds, 2 k n² / d, are published as 0.4572 and 1.8287 m/s.
+    // Shaft speeds follow 1 − e^(−t / 0.1 s), thrust is proportional to their square, and (m + A11)
+    // u' = thrust − d u is linear. The steady speeds, 2 k n² / d, are published as 0.4572 and
+    // 1.8287 m/s.
     let time_s = 85.2815 / 77.5544;
     let share = |t_s: f64| {
         let ramp = |rate: f64| {
@@ -154,8 +155,8 @@ fn it_takes_up_speed_as_its_mass_resistance_and_shafts_say() {
 
 #[test]
 fn it_spins_on_the_spot_under_opposed_shafts() {
-    // At 70 and −70 rad/s, published as 13.18 degrees per second. Astern the propellers give less
-    // thrust, so it creeps ahead.
+    // At 70 and −70 rad/s, published as 13.18 degrees per second. Astern, the propellers give less
+    // thrust, so the boat creeps ahead.
     let [u, v, r] = from_rest([70.0, -70.0], 60).0[1199];
     assert!(
         (r.to_degrees() - 13.18).abs() < 0.02,

@@ -376,8 +376,8 @@ impl Trace {
     }
 }
 
-/// The order for a Pyquaticus action: half a turn to an eighth of a turn to port, at full and half
-/// speed.
+/// The order for a Pyquaticus action: from a half-turn to an eighth of a turn to port, at full and
+/// half speed.
 fn order_of(action: usize, speed_max_m_s: f64) -> Order {
     let by_rad = (180.0 - 45.0 * (action % 8) as f64).to_radians();
     match action {
@@ -396,7 +396,7 @@ fn order_of(action: usize, speed_max_m_s: f64) -> Order {
     }
 }
 
-/// The trace's word for an event.
+/// The name of an event in the trace.
 fn told(event: Event) -> Option<String> {
     Some(match event {
         Event::Tagged {

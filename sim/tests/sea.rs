@@ -17,7 +17,7 @@ fn waves(hs_m: f64, tp_s: f64) -> Waves {
     common::waves(hs_m, tp_s, 0.0)
 }
 
-/// A drifter's mean velocity over ten minutes and the root mean square of its velocity, m/s, in
+/// A drifter's mean velocity over ten minutes and the root mean square of its velocity (m/s), in
 /// waves of this height without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
     let scenario = surveyor_on(|sea| {

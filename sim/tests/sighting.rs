@@ -1,5 +1,5 @@
 //! Sightings compared with the scenario's settings: range, field of view, delay, noise, loss and
-//! memory; they are lost or delayed with the report that carries them.
+//! memory; they are lost or delayed together with the report that carries them.
 
 mod common;
 
@@ -17,7 +17,7 @@ const BLUE: VehicleId = VehicleId(0);
 const RED: VehicleId = VehicleId(1);
 const DECISION: SimTime = SimTime(100_000_000);
 
-/// Sightings without delay, error or loss, but not the default.
+/// Settings without delay, error or loss that still differ from the default.
 fn clear_sight() -> Sharing {
     Sharing {
         range_m: Some(1e6),
@@ -43,7 +43,7 @@ fn facing(sharing: Sharing, blue: (f64, f64, f64), red: (f64, f64, f64)) -> Scen
     scenario
 }
 
-/// Blue's contact of red.
+/// Blue's contact for red.
 fn shown(contest: &mut Contest) -> Option<Contact> {
     contest.pictures()[0]
         .contacts

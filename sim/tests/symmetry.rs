@@ -118,8 +118,8 @@ fn everything(sea: &mut Sea) {
     }];
 }
 
-/// A boat's position, heading and velocity after each tick, from north 200 and east 300 on a
-/// heading of 20°, in a world rotated by `by_rad` and rotated back.
+/// A boat's position, heading and velocity after each tick, starting from north 200 and east 300 on
+/// a heading of 20°, in a world rotated by `by_rad` and rotated back.
 fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> Vec<[f64; 6]> {
     let start = turned(
         Ned {
@@ -150,8 +150,8 @@ fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> V
 #[test]
 fn it_does_not_matter_where_north_is() {
     // The heading table has an entry every 5°. Rotated by a multiple of that, a boat finds the same
-    // numbers in single precision; otherwise it finds others between the entries, with an error of
-    // a fraction of a per cent.
+    // numbers in single precision; otherwise it finds different numbers between the entries, with
+    // an error of a fraction of a per cent.
     let scenario = surveyor_on(everything);
     let steer = |by_rad: f64| Order::Steer {
         heading_rad: primitives::angle::wrap_pi(0.6 + by_rad),

@@ -333,7 +333,7 @@ fn after_a_day_the_phases_are_as_good_as_after_a_second() {
     }
 }
 
-/// A phase in deep water with the product of frequency and time to twice the digits.
+/// A phase in deep water, with the product of frequency and time to twice as many digits.
 fn phase_rad(c: &Component, at: Ned, time_s: f64) -> f64 {
     let (sin, cos) = libm::sincos(c.toward_rad);
     let k = c.omega_rad_s * c.omega_rad_s / GRAVITY_M_S2;

@@ -208,8 +208,8 @@ fn the_wind_pushes_a_boat_away_and_its_bow_off() {
             "from {from_deg}: {got:?}"
         );
     }
-    // A boat that points east, moving at 3 m/s ahead and 1 m/s to starboard, in a wind from the
-    // north on its port side.
+    // A boat pointing east, moving at 3 m/s ahead and 1 m/s to starboard, in a wind from the north
+    // on its port side.
     let past = wind_past_boat(
         Rotation::from_heading_deg(90.0),
         Ned {

@@ -1,4 +1,4 @@
-//! A stranger on the same network as a game that listens on that network.
+//! A stranger on the network on which a game listens.
 
 use crate::attack::ATTACKS;
 use crate::disturbed_game::{DisturbedGame, SPEED};

@@ -1,5 +1,5 @@
-//! Attacks on the resources that a game's machine holds: memory, descriptors, tables, and the time
-//! of other nodes.
+//! Attacks on resources of a game's machine: memory, descriptors, tables, and the time of other
+//! nodes.
 
 use crate::crowd::{FILES, is_withstood, squall_with_files};
 use crate::disturbed_game::DisturbedGame;
@@ -206,12 +206,12 @@ fn many_declarations(target: &Target) -> Box<dyn Any> {
                 .ok(),
         ));
     }
-    // Drop the session last: it keeps the others open.
+    // Drop this session last: it keeps the others open.
     kept.push(Box::new(intruder));
     Box::new(kept)
 }
 
-/// A router receives announcements that clients must request, and may speak for other nodes.
+/// A router receives declarations that clients must request, and may speak for other nodes.
 fn router(target: &Target) -> Box<dyn Any> {
     let intruder = target.open("router").expect("the port is open");
     let answers = [

@@ -277,7 +277,7 @@ fn a_red_agent_learns_nothing_about_blue_and_changes_nothing() {
             "{place}"
         );
     }
-    // Joining is allowed, but not for these boats.
+    // The node may join, but not with these boats.
     for vehicles in [
         json!(["blue_one"]),
         json!(["red_one", "blue_one"]),
@@ -393,7 +393,7 @@ fn a_gateway_can_report_only_for_its_own_boat() {
     assert!(answer("blue_one")["answer"]["Refused"].is_object());
     assert!(answer("red_one")["answer"]["Granted"].is_object());
     // Only a boat's own gateway can answer for it, whatever keys others hold; it receives no order
-    // for another boat.
+    // for any other boat.
     let others = ["team-blue", "observer", "operator"].map(|name| traitor(&sim, &own, name));
     let _forged: Vec<_> = others
         .iter()

@@ -1,4 +1,4 @@
-//! Crowds the port of a sim that may open few files: no authorised node is kept out, and no
+//! Crowds the port of a sim that may open only a few files: no authorised node is kept out, and no
 //! connected node is disturbed.
 
 use crate::disturbed_game::all_stay;
@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Limits of open files for the sim; each crowd has half as many connections more.
+/// The sim's limits on open files; each crowd has half as many connections more.
 pub(crate) const FILES: [usize; 2] = [1024, 128];
 /// The start of a TLS handshake (RFC 8446) that announces 512 bytes.
 const HALF_HELLO: [u8; 11] = [0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc, 3, 3];
@@ -92,7 +92,7 @@ fn stream(target: &Target, count: usize) -> Repeated {
     stream
 }
 
-/// The program with this limit of open files.
+/// The program with this limit on open files.
 pub(crate) fn squall_with_files(files: usize) -> Command {
     let program = squall(&[]);
     let mut shell = Command::new("sh");
@@ -129,7 +129,7 @@ impl Gaps {
     }
 }
 
-/// Crowds the port of a sim with this limit of open files. `operator` is connected to the game, and
+/// Crowds the port of a sim with this limit on open files. `operator` is connected to the game, and
 /// `comes_in` tries to join.
 pub(crate) fn is_withstood(
     sim: Sim,

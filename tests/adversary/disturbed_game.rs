@@ -14,7 +14,7 @@ pub(crate) const SPEED: &str = "2";
 pub(crate) struct DisturbedGame {
     pub(crate) sim: Sim,
     pub(crate) agents: Vec<Process>,
-    /// A session that may speed the game up again, if any.
+    /// A session that can speed the game up again, if any.
     pub(crate) operator: Option<Bus>,
 }
 

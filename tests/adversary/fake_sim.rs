@@ -79,7 +79,7 @@ impl FakeSim {
     }
 }
 
-/// Neither as a client nor as a router, which receives announcements that clients must request.
+/// Neither as a client nor as a router, which receives declarations that clients must request.
 #[test]
 fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
     let mut game = DisturbedGame::start();
@@ -95,7 +95,7 @@ fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
         .iter()
         .flat_map(|intruder| topics.map(|topic| intruder.answer(topic)))
         .collect();
-    // Beside the sim's own.
+    // In addition to the sim's own endpoint.
     let tokens = intruders.each_ref().map(|intruder| {
         intruder
             .session
@@ -193,7 +193,7 @@ fn a_second_sim_with_the_same_name_disturbs_no_node() {
     );
     assert_eq!(second.game, name);
     game.check();
-    // Each agent joined at the address it was given.
+    // Each agent joined at the address given to it.
     let _agents: Vec<Process> = FOUR
         .iter()
         .map(|vehicle| second.agent(&[vehicle]))

@@ -1,4 +1,4 @@
-//! A zenoh session outside our own programs.
+//! A zenoh session from outside our own programs.
 
 use crate::support::Sim;
 use messages::topic::{self, GameName};
@@ -54,11 +54,11 @@ impl Target {
         self.endpoint.split_once('/').expect("an endpoint").1
     }
 
-    /// Opens this many connections and sends these bytes on each; fewer if the descriptors run out.
+    /// Opens this many connections and sends these bytes on each; fewer if descriptors run out.
     pub(crate) fn connections(&self, words: &[u8], count: usize) -> Vec<TcpStream> {
         let connect = |_| {
             let mut stream = TcpStream::connect(self.address()).ok()?;
-            // The server may close it at once.
+            // The server may close the connection at once.
             drop(stream.write_all(words));
             Some(stream)
         };

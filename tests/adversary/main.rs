@@ -1,4 +1,4 @@
-//! What an attacker can do who reaches a game's port and ignores our rules, using zenoh's own API.
+//! Attacks by someone who reaches a game's port and ignores our rules, using zenoh's own API.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,

@@ -1,4 +1,4 @@
-//! zenoh's access control stops an intruder from forging; what is open to all arrives intact.
+//! zenoh's access control prevents forgery by intruders; data open to all arrives intact.
 
 use crate::disturbed_game::all_stay;
 use crate::intruder::Intruder;
@@ -116,7 +116,7 @@ fn that_there_is_a_game_is_open_to_all_and_who_watches_hears_it() {
     sim.stop();
 }
 
-/// An answer has the priority of its query, and most queues of zenoh have room for 128 kB.
+/// An answer has the priority of its query, and most of zenoh's queues have room for 128 kB.
 #[test]
 fn a_query_at_the_default_priority_gets_the_whole_scenario_of_a_learned_strategy() {
     let sim = Sim::start("patient", &["--blue", "learned", "--join-s", "600"]);

@@ -1,4 +1,4 @@
-//! A stranger between operators and gateways: it answers in the gateway's place, keeps proofs, and
+//! A stranger between operators and gateways: it answers in place of the gateway, keeps proofs, and
 //! forges the gateway's reports.
 
 use crate::control_port::Rig;
@@ -25,7 +25,7 @@ fn operate(
     bus.request_node(&topic::operate(&sim.name(), "blue_one"), command, LIMIT)
 }
 
-/// Answers at the topic of the boat's gateway, claiming to be complete, until dropped.
+/// Answers on the topic of the boat's gateway, claiming to be complete, until dropped.
 fn answer(
     intruder: &Intruder,
     take: impl Fn(Query) + Send + Sync + 'static,
@@ -48,7 +48,7 @@ fn reply(query: &Query, json: &str) {
     );
 }
 
-/// The stranger's answer in the gateway's place: the boat is disarmed.
+/// The stranger's answer in place of the gateway's: the boat is disarmed.
 fn forged_reply() -> String {
     let status = GatewayStatus {
         vehicle: "blue_one".to_owned(),

@@ -8,7 +8,7 @@ use messages::{Control, JoinReply, JoinRequest, Role, topic};
 use serde_json::{Value, json};
 use std::time::Duration;
 
-/// A session of our own program, with this token or none.
+/// A session of our own program, with this token or without one.
 pub(crate) fn session(sim: &Sim, token: Option<Token>) -> Bus {
     Bus::leaf(&Net {
         connect: vec![sim.endpoint.clone()],
@@ -96,8 +96,8 @@ fn what_was_seen_once_cannot_be_used_again() {
         Control::Speed(Some(5.0)),
     )
     .expect("it may");
-    // The same challenge with an invented proof, a missing challenge and an invalid one; below,
-    // bare controls as in the earlier protocol.
+    // The same challenge with an invented proof, a missing challenge and an invalid challenge;
+    // below, bare controls as in the earlier protocol.
     for forged in [
         json!({ "body": "pause", "proof": { "challenge": challenge["challenge"], "mac": "00".repeat(32) } }),
         json!({ "body": "pause", "proof": { "challenge": "", "mac": "" } }),

@@ -5,7 +5,7 @@ use crate::program::{command, only_file, printed, project, words};
 use std::fs::File;
 use std::path::Path;
 
-/// A short recorded game in a folder, which is also the folder of all commands.
+/// A short recorded game in a folder, in which all commands run.
 fn recorded_game(dir: &Path) -> String {
     let args = [
         "run",
@@ -20,7 +20,7 @@ fn recorded_game(dir: &Path) -> String {
     only_file(dir.join("runs"))
 }
 
-/// The commands, with this standard output, that do not fail or do not report the full disk.
+/// The commands that, with this standard output, do not fail or do not report the full disk.
 fn silent<'a>(dir: &Path, output: &str, commands: &[&'a str]) -> Vec<&'a str> {
     let is_silent = |line: &&&str| {
         let mut command = command(dir, &words(line));

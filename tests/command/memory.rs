@@ -5,10 +5,10 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::Duration;
 
-/// Allowed growth for the longer recording: more events, and noise.
+/// Allowed growth for the longer recording, for more events and noise.
 const MORE: f64 = 1.2;
 
-/// Records a game of 40 boats at rest, this long; returns the path.
+/// Records a game of 40 boats at rest for this duration; returns the path.
 fn recorded(dir: &Path, duration_s: u32) -> String {
     let game = dir.join(format!("idle_{duration_s}.toml"));
     let base = program::scenario("games/swarm_20v20.toml");

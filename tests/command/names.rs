@@ -1,9 +1,9 @@
-//! Files and recordings that are given by name, and files on the disk that override built-in ones.
+//! Files and recordings given by name, and files on disk that override built-in ones.
 
 use crate::program::{command, only_file, printed, refusal};
 use std::path::Path;
 
-/// Built-in files stand in for those missing from a folder `scenarios`, even if its name is not
+/// Built-in files stand in for files missing from a folder `scenarios`, even if its name is not
 /// typed.
 #[test]
 fn a_file_in_scenarios_is_the_same_from_every_folder() {

@@ -20,7 +20,8 @@ const SPEC: PolicySpec = PolicySpec {
     action: ActionSpace::Pyquaticus,
     period_s: 0.5,
 };
-/// Straight on at full speed: its logit is 3 plus twice the input [`MATTERS`]; all others are 0.
+/// Straight ahead at full speed: its logit is 3 plus twice the input [`MATTERS`]; all other logits
+/// are 0.
 const ACTION: usize = 4;
 const MATTERS: &str = "goal_ahead";
 

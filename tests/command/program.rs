@@ -51,7 +51,7 @@ pub(crate) fn printed(dir: impl AsRef<Path>, args: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Runs the program, which must fail; returns its error text.
+/// Runs the program, which must fail; returns its error output.
 pub(crate) fn refusal(dir: impl AsRef<Path>, args: &[&str]) -> String {
     let output = squall(dir, args);
     assert!(!output.status.success(), "{args:?} is accepted");

@@ -2,7 +2,7 @@
 
 use crate::program::{command, project, refusal, scenario, words};
 
-/// Runs the commands of one case; returns the texts missing from their output.
+/// Runs the commands of one case; returns the strings missing from their output.
 fn missing(case: &str) -> Vec<String> {
     let dir = tempfile::tempdir().unwrap();
     let mut file = None;
@@ -112,7 +112,7 @@ fn errors_show_the_line_with_a_caret_and_colours_where_they_are_wanted() {
                 a.toml:3:7: ../gale.toml is not in quotes, expected \"../gale.toml\"\n  |\n3 | sea = ../gale.toml\n  |       ^^^^^^^^^^^^\n";
     assert_eq!(plain, want);
     assert_eq!(said(&["--color", "never"], None), plain);
-    // The values of an axis are settings with the same mistake, which no line of a file has.
+    // The values of an axis are settings with the same mistake, which is on no line of a file.
     let sweep = format!(
         "base = {:?}\n[[axis]]\nkey = \"sea.wind.sped_m_s\"\nvalues = [1, 2]\n",
         scenario("sweeps/wind.toml")

@@ -1,4 +1,4 @@
-//! `squall sea` from the command line: the numbers it prints and the page it draws.
+//! `squall sea` from the command line: the numbers that it prints and the page that it draws.
 
 use crate::program::{printed, scenario};
 use roxmltree::Document;
@@ -35,7 +35,7 @@ fn value<'a>(text: &'a str, name: &str) -> &'a str {
         .trim()
 }
 
-/// The numbers in a text, in order.
+/// The numbers in a string, in order.
 fn numbers(text: &str) -> Vec<f64> {
     text.split(|c: char| !(c.is_ascii_digit() || c == '.'))
         .filter_map(|word| word.parse().ok())
@@ -50,7 +50,7 @@ fn assert_well_formed(svg: &str) {
 #[test]
 fn every_sea_has_its_numbers_and_a_page_of_four_panels() {
     let calm = ["no waves", "no waves", "no wind", "the boat does not drift"];
-    // The panels without data.
+    // The panels that have no data.
     for (name, absent) in [
         ("fresh_breeze", &[][..]),
         ("bay_gale", &[]),

@@ -2,7 +2,7 @@
 
 use crate::program::{printed, project, refusal, scenario, squall};
 
-/// The output of `squall strategy` for a file with this text: success, standard output, standard
+/// The output of `squall strategy` for a file with this content: success, standard output, standard
 /// error.
 fn shown(text: &str, more: &[&str]) -> (bool, String, String) {
     let folder = tempfile::tempdir().unwrap();

@@ -371,7 +371,7 @@ fn games_that_cannot_start_are_explained() {
     let dir = tempfile::tempdir().unwrap();
     short_tournament(&dir, "");
     let crowd = place(&dir, "crowd.toml");
-    // Two boats lie where a third must keep clear of them.
+    // Two boats are where a third must keep clear of them.
     let game = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
                 [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
                 [[fleet]]\nteam = \"red\"\ncount = 1\n\
@@ -442,12 +442,12 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
         (4.into(), 3.into())
     );
     assert_eq!(known, anew);
-    // A renamed file is the same player; a different file is not.
+    // A renamed file is the same player; a changed file is not.
     let said = play(&[("renamed", "strategy_4"), pav01], &["--league", &league]);
     assert!(said.contains("4 of 4 games already played"), "{said}");
     let said = play(&[four, ("pav01", "easy_attackers")], &["--league", &league]);
     assert!(said.contains("0 of 4 games already played"), "{said}");
-    // If a game file has changed on the disk, its earlier results are unusable.
+    // If a game file has changed on disk, its earlier results are unusable.
     let changed = text.replacen("\"seed\":1", "\"seed\":7", 1);
     assert_ne!(changed, text);
     for (damaged, expected) in [
@@ -595,7 +595,7 @@ fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
         !text.contains("--both-sides") && first["ends_differ"] == false,
         "{text}"
     );
-    // Equal strategies gain nothing from both ends.
+    // Equal strategies gain nothing from playing both ends.
     for (red, is_advised) in [("strategy_3", true), ("strategy_4", false)] {
         let args = [
             "run",

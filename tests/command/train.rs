@@ -17,7 +17,7 @@ fn training() -> TempDir {
         "strategies/pav01.toml",
     ]
     .map(scenario);
-    // Not on the disk here: the built-in one.
+    // Not on disk here, so the built-in one is used.
     let policy = "scenarios/strategies/policy.toml";
     let stage = |name: &str, opponent: &str, samples: u32| {
         format!(
@@ -41,7 +41,7 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
     std::fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The lines of a table without their last cell, and that cell.
+/// The lines of a table without their last cells, and those cells.
 fn split(table: &str) -> (Vec<&str>, Vec<&str>) {
     table
         .lines()
@@ -96,7 +96,7 @@ fn a_training_leaves_the_same_files_on_any_number_of_threads() {
         .unwrap();
     assert!((12_000..14_000).contains(&last), "{updates}");
 
-    // A finished training is not started again, and its output is a policy.
+    // A finished training run is not started again, and its output is a policy.
     let why = refusal(here, &["train", "short.toml", "--out", "one"]);
     assert!(why.contains("continue it with --resume"), "{why}");
     let text = printed(here, &["policy", "one/best.onnx"]);
@@ -124,7 +124,8 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
     let dir = training();
     let here = dir.path();
     printed(here, &["train", "short.toml", "--out", "whole"]);
-    // Simulate a power cut after the first state: the files have later lines, the state does not.
+    // Simulate a power cut after the first state: the files have later lines, but the state does
+    // not.
     let why = refusal(here, &["train", "short.toml", "--out", "cut", "--resume"]);
     assert!(why.contains("state.bin"), "{why}");
     let cut = here.join("cut");

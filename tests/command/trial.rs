@@ -140,7 +140,7 @@ fn the_otter_drifts_in_a_current_as_the_reference_does() {
     }
 }
 
-/// The swings of a zigzag (extreme headings, degrees) and the mean period, s, after 40 s.
+/// The swings of a zigzag (extreme headings, in degrees) and the mean period (s) after 40 s.
 fn zigzag(times_s: &[f64], headings_deg: &[f64]) -> (Vec<f64>, f64) {
     let within: Vec<f64> = headings_deg
         .iter()
@@ -496,7 +496,7 @@ fn turns_to_both_sides_are_mirror_images() {
     }
 }
 
-/// Writes a log of the Surveyor, and a boat file with other start values.
+/// Writes a log of the Surveyor, and a boat file with different initial values.
 fn log_and_start(dir: &TempDir) {
     let rows = [
         [90.0, 90.0],

@@ -10,12 +10,12 @@ use simulated_network::{Fault, Verdict};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Margin for retransmission and transport, without deliberate loss; then with it.
+/// Margin for retransmission and transport: without deliberate loss, then with it.
 const SENT_AGAIN: Duration = Duration::from_millis(1000);
 const SENT_OFTEN: Duration = Duration::from_millis(2000);
-/// Extra delay before an effect with a time limit of patience becomes visible.
+/// Extra delay before an effect with patience as its time limit becomes visible.
 const SHOWS: Duration = Duration::from_millis(1500);
-/// All nodes are back within the network's lease, patience and this margin after the last fault.
+/// After the last fault, all nodes are back within the network's lease, patience and this margin.
 const BACK: Duration = Duration::from_secs(8);
 /// All nodes exit within this time after the game: an agent that never found it searches for a
 /// minute.
@@ -52,8 +52,8 @@ impl Plan {
             .any(|(_, fault)| matches!(fault, Fault::Kill { node: who, .. } if *who == node))
     }
 
-    /// When the real boat must be back whatever happened to it; `None` without a real boat or if a
-    /// needed node never restarts.
+    /// When the real boat must be back whatever happened to it; `None` if there is none, or if a
+    /// node that it needs never restarts.
     pub(crate) fn real_boat_is_back(&self) -> Option<Duration> {
         let is_gone = |(_, fault): &(Duration, Fault)| matches!(fault, Fault::Kill { node, restart: None } if [SIM, self.gateway()].contains(node));
         let comes = self.has_real_boat() && !self.faults.iter().any(is_gone);
@@ -115,8 +115,7 @@ fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String>
     let is_lossy = plan.conditions.loss > 0.0 || plan.conditions.damaged.0 > 0.0;
     let margin = if is_lossy { SENT_OFTEN } else { SENT_AGAIN };
     let enough = plan.patience().saturating_sub(margin);
-    // A suspended sim must not report its agents as lost; cutting off the sim cuts off all the
-    // others.
+    // A suspended sim must not report its agents as lost; cutting off the sim cuts off all others.
     let is_excused = |node: usize| {
         let absent = plan.longest_absence(node, node == SIM);
         absent > Duration::ZERO && absent >= enough
@@ -214,7 +213,7 @@ fn check_ends(plan: &Plan, played: &Played) -> Vec<String> {
         if is_early && !plan.forges() {
             wrong.push(format!("agent {agent} exits during the game: {reason}"));
         } else if plan.faults.is_empty() && !plan.forges() {
-            // Even so, messages get lost.
+            // Even so, some messages are lost.
             wrong.push(format!(
                 "agent {agent} misses the end of the game: {reason}"
             ));

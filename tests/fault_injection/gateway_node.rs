@@ -12,11 +12,11 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
-/// A boat that has sent no byte for this long counts as lost.
+/// Time without a byte after which a boat counts as lost.
 const SILENCE: Duration = Duration::from_secs(3);
-/// The time that connecting takes.
+/// The time needed to connect.
 const CONNECT: Duration = Duration::from_millis(100);
-/// How often a link without a boat checks whether to end.
+/// Interval at which a link without a boat checks whether to end.
 const POLL: Duration = Duration::from_millis(500);
 
 /// The gateway's settings.

@@ -36,7 +36,7 @@ const GAMES: u64 = 400;
 /// Additional games with rare events: a gateway loses its game and must join again, and the first
 /// message to a teammate is lost.
 const SELDOM: [u64; 3] = [3152, 3690, 4172];
-/// After this many failures the remaining games are skipped.
+/// Number of failures after which the remaining games are skipped.
 const FAILURES: usize = 5;
 
 fn number(variable: &str) -> Option<u64> {
@@ -47,8 +47,8 @@ fn number(variable: &str) -> Option<u64> {
     )
 }
 
-/// Combines the traces of all games, in any order: two builds that print the same value played the
-/// same games, message by message.
+/// Combines the traces of all games, in any order: two builds that print the same value have played
+/// the same games, message by message.
 static TRACES: AtomicU64 = AtomicU64::new(0);
 
 /// The error in the game of a seed, if any.

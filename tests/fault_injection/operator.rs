@@ -17,15 +17,15 @@ use std::time::{Duration, Instant};
 
 /// When the operator's node starts.
 pub(crate) const BEGINS: Duration = Duration::from_millis(300);
-/// Time limit from an E-stop to the wire without faults, apart from transport.
+/// Time limit from an E-stop to the wire without faults, excluding transport.
 pub(crate) const PROMISED: Duration = Duration::from_millis(200);
 /// Recovery time of nodes after any fault: the network's lease plus joining again.
 pub(crate) const RECOVERS: Duration = Duration::from_secs(25);
 /// How long a page repeats its E-stop request, with a margin.
 const SAID_AGAIN: Duration = Duration::from_secs(3);
-/// A game whose sim sends no more orders ends within this time.
+/// Time within which a game ends once its sim sends no more orders.
 const ENDS: Duration = Duration::from_secs(2);
-/// The last gateway exits this long after the game; until then it is checked.
+/// Time after the game at which the last gateway exits; until then it is checked.
 const STAYS: Duration = Duration::from_secs(3);
 
 /// An operator at a terminal.
@@ -95,7 +95,7 @@ impl Operator<'_> {
         self.over.visit(|over| *over)
     }
 
-    /// Whether all nodes needed for an answer are free of faults, and have been for the recovery
+    /// Whether all nodes needed for an answer are free of faults, and have been so for the recovery
     /// time.
     fn is_undisturbed(&self) -> bool {
         self.are_undisturbed(&[SIM, self.plan.gateway(), self.plan.operator()])
@@ -146,16 +146,16 @@ impl Operator<'_> {
             state.arms_left = state.arms_left.min(self.unanswered);
             state.update_armed();
         });
-        // The page has stopped all boats.
+        // All boats have been stopped from the page.
         if is_stopped {
             self.release_all();
         }
     }
 
-    /// Checks that a gateway that had time to join again has orders, unless the game is just
+    /// Checks that a gateway that has had time to join again has orders, unless the game is just
     /// ending.
     fn check_orders_come(&mut self) {
-        // Without its agent it has no orders either.
+        // Without its agent, the boat has no orders either.
         let nodes: Vec<usize> = (SIM..=self.plan.operator()).collect();
         let was_undisturbed = self.has_had_orders && self.are_undisturbed(&nodes);
         clock::rest(ENDS);

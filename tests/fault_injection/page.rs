@@ -14,9 +14,9 @@ use std::time::{Duration, Instant};
 
 /// When the page is opened.
 pub(crate) const BEGINS: Duration = Duration::from_millis(400);
-/// How often the page is polled.
+/// Interval at which the page is polled.
 const LOOKS: Duration = Duration::from_millis(100);
-/// Upper limit for the time from the button to the wire, and between frames.
+/// Upper limit on the time from the button to the wire, and between frames.
 const LATE: Duration = Duration::from_secs(3);
 
 /// Polls the page until the game is over.

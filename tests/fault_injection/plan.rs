@@ -8,13 +8,13 @@ use std::time::Duration;
 /// The games, from the folder `games`.
 pub(crate) const GAMES: [&str; 5] = ["point_boats", "surveyors", "duel", "talking", "real_boat"];
 
-/// Numbers of the first nodes. Agents follow, then for a real boat its gateway, an operator and the
-/// boat itself.
+/// Numbers of the first nodes. Agents follow, then, for a real boat, its gateway, an operator and
+/// the boat itself.
 pub(crate) const SIM: usize = 0;
 pub(crate) const OBSERVER: usize = 1;
 pub(crate) const FIRST_AGENT: usize = 2;
 
-/// zenoh closes a link after this long without a sign of life from the other side.
+/// Time without a sign of life from the other side after which zenoh closes a link.
 const LEASE: Duration = Duration::from_secs(10);
 
 /// The plan of one game.
@@ -23,7 +23,7 @@ pub(crate) struct Plan {
     pub(crate) seed: u64,
     /// Index into [`GAMES`].
     pub(crate) game: usize,
-    /// Seed of the scenario's game.
+    /// The seed of the game.
     pub(crate) game_seed: u64,
     pub(crate) duration_s: u32,
     pub(crate) pace: Pace,
@@ -169,8 +169,8 @@ impl Plan {
         self.conditions.loss == 0.0 && self.conditions.damaged.0 == 0.0
     }
 
-    /// Maximum time without faults for a message to cross two links, be processed, and cross
-    /// another link.
+    /// Maximum time without faults for a message to cross two links, be processed, and cross one
+    /// more link.
     pub(crate) fn on_its_way(&self) -> Duration {
         3 * (self.conditions.delay + self.conditions.jitter + self.conditions.pause)
     }
@@ -193,7 +193,7 @@ impl Plan {
         GAMES[self.game] == "talking"
     }
 
-    /// Whether damage may turn a message into another valid one.
+    /// Whether damage may turn a message into a different valid one.
     pub(crate) fn forges(&self) -> bool {
         self.conditions.damaged.0 > 0.0 && self.conditions.damaged.1 != Damage::Truncated
     }

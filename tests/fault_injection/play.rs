@@ -21,13 +21,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
-/// Limit of virtual time for a game.
+/// Limit on the virtual time of a game.
 pub(crate) const LIMIT: Duration = Duration::from_secs(300);
-/// How long the sim waits for agents to join.
+/// Time for which the sim waits for agents to join.
 const JOIN: Duration = Duration::from_secs(30);
-/// How long agents search for the game.
+/// Time for which agents search for the game.
 pub(crate) const WAIT: Duration = Duration::from_secs(60);
-/// Agents exit after this long without a picture.
+/// Time without a picture after which agents exit.
 const SILENCE: Duration = Duration::from_secs(40);
 
 /// The results of a game.
@@ -135,7 +135,7 @@ pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     }
 }
 
-/// Does this when its node exits for any reason.
+/// Runs this when its node exits for any reason.
 pub(crate) struct AtExit<F: FnMut()>(pub(crate) F);
 
 impl<F: FnMut()> Drop for AtExit<F> {

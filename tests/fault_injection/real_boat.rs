@@ -11,18 +11,18 @@ use primitives::frame::{LatLon, Ned};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Step interval of the boat.
+/// Interval between the boat's steps.
 const MOVES: Duration = Duration::from_millis(50);
 /// Telemetry is sent at every second step.
 const TELEMETRY: u64 = 2;
-/// The boat stops by itself after this long without a command, s.
+/// Time without a command after which the boat stops by itself, s.
 const WATCHDOG_S: f64 = 2.0;
 /// Magnetic declination of its waters, east positive, rad.
 pub(crate) const DECLINATION_RAD: f64 = -0.218;
-/// Unread bytes for the gateway beyond this are lost.
+/// Maximum number of unread bytes for the gateway; further ones are lost.
 const UNREAD_MAX: usize = 1 << 16;
-/// An order that waits for the gateway's loop is at most this much older than the oracle assumes,
-/// s; an older one is not used.
+/// An order that waits for the gateway's loop is at most this much older than the oracle assumes
+/// (s); an older one is not used.
 pub(crate) const WAITED_S: f64 = 0.55;
 
 /// The wire between a boat and its gateway.
@@ -44,10 +44,10 @@ pub(crate) struct State {
     to_boat: Vec<u8>,
     pub(crate) from_boat: Vec<u8>,
     pub(crate) oracle: Oracle,
-    /// How many requests to arm may still take effect.
+    /// Number of requests to arm that may still take effect.
     pub(crate) arms_left: u32,
     is_armed: bool,
-    /// From this time no sentence may drive the boat, because of a stop.
+    /// From this time on, no sentence may drive the boat, because of a stop.
     pub(crate) must_rest: Option<Instant>,
     /// When the page's E-stop was last pressed.
     pub(crate) page_stopped: Option<Instant>,
@@ -96,7 +96,7 @@ impl Wire {
         self.state.wait(limit, holds)
     }
 
-    /// Carries a gateway's sentences to the boat.
+    /// Transmits a gateway's sentences to the boat.
     pub(crate) fn carry(&self, bytes: &[u8]) {
         self.visit(|state, now| {
             // A killed process sends nothing more.
@@ -129,7 +129,7 @@ impl Wire {
         }
     }
 
-    /// Records the start of a gateway: it drives no boat before it is armed.
+    /// Records the start of a gateway: it must not drive the boat before it is armed.
     pub(crate) fn note_start(&self) {
         self.visit(|state, _| {
             state.is_armed = false;

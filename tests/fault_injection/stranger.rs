@@ -1,4 +1,4 @@
-//! A stranger who reaches the hub without a token. It answers operators in the gateway's place,
+//! A stranger who reaches the hub without a token. It answers operators in place of the gateway,
 //! replays their proofs, forges reports, and floods.
 
 use crate::play::net;
@@ -10,7 +10,7 @@ use primitives::stream::Stream;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The state that the stranger makes up.
+/// The state invented by the stranger.
 pub(crate) const FORGED: &str = "forged";
 /// When the stranger appears.
 pub(crate) const BEGINS: Duration = Duration::from_millis(500);

@@ -9,17 +9,17 @@ use sim::node::Pace;
 use simulated_network::Published;
 use std::time::Duration;
 
-/// A boat that must hold has stopped its thrusters after this much simulated time: they change by a
+/// Simulated time within which a boat that must hold has stopped its thrusters: they change by a
 /// fifth of their range per second, with a lag of 0.25 s.
 const SETTLES_S: f64 = 6.5;
-/// A real boat that has joined is reported at least this often, whatever the pauses.
+/// Maximum time between reports of a real boat that has joined, whatever the pauses.
 const UNREPORTED: Duration = Duration::from_secs(2);
 /// Maximum thrust of a boat that holds, N.
 const RESTS_NEWTON: f64 = 1.0;
-/// After a tag the rules may drive a boat for this long.
+/// Time after a tag for which the rules may drive a boat.
 const DRIVEN_S: f64 = 5.0;
 
-/// One boat as seen on the wire.
+/// One boat as observed on the wire.
 #[derive(Clone, Debug)]
 struct Boat {
     /// The time of the picture that its newest order answers.
@@ -40,7 +40,7 @@ pub(crate) struct WireMonitor {
     pub(crate) lost: Vec<Option<(Duration, Duration)>>,
     /// When the first and the last frame of the game arrived.
     pub(crate) frames: Option<(Duration, Duration)>,
-    /// When the real boat must be back; `None` without one or if it is lost for good.
+    /// When the real boat must be back; `None` if there is none or it is lost for good.
     is_back: Option<Duration>,
     /// When the real boat was last reported.
     reported: Duration,
@@ -89,7 +89,7 @@ impl WireMonitor {
         }
     }
 
-    /// A real boat never gets an expired order.
+    /// A real boat never receives an expired order.
     fn check_external_order(&mut self, external: &ExternalOrder) {
         let ExternalOrder {
             stamp,
@@ -98,7 +98,7 @@ impl WireMonitor {
             ..
         } = external;
         let age_s = (stamp.valid_ns - *given_ns).as_s();
-        // The rules drive a boat home by themselves while its agent is connected: even then the
+        // The rules drive a boat home by themselves while its agent is connected; even then, the
         // order must be fresh.
         if age_s > self.order_ttl_s && order.order() != Some(Order::Hold) {
             self.wrong.push(format!(

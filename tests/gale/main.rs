@@ -1,6 +1,6 @@
 //! Gateways of real boats in a gale, on the simulated sea in memory, much faster than real time: no
-//! false alarms, and every fault of a compass, of thrusters or of the boat's receiver of commands
-//! is found in time.
+//! false alarms, and every fault of a compass, of thrusters or of the boat's command receiver is
+//! detected in time.
 //!
 //! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` simulates
 //! a day with four boats; the default is half an hour.
@@ -22,19 +22,19 @@ use sim::World;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Each voyage of this length has its own boats and sea, s: longer ones would empty the batteries.
+/// Duration of a voyage with its own boats and sea, s: longer ones would empty the batteries.
 const VOYAGE_S: f64 = 1200.0;
 /// Distance between the boats' areas, m.
 const APART_M: f64 = 500.0;
-/// How far a boat goes from the middle of its area, m.
+/// Maximum distance of a boat from the middle of its area, m.
 const REACH_M: f64 = 80.0;
 const BOATS: usize = 4;
 
-/// The fault of a boat from a given time on.
+/// A fault of a boat from a given time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// The compass reads too low by this much, rad.
+    /// The compass reads too low by this angle, rad.
     CompassOff(f64),
     /// The compass reading never changes.
     CompassFrozen,
@@ -47,7 +47,7 @@ enum Fault {
 struct Boat {
     emulator: Emulator,
     bridge: Bridge,
-    /// The present order, and its end.
+    /// The present order, and when it ends.
     order: Order,
     until: SimTime,
     toward: Option<(Ned, f64)>,
@@ -245,7 +245,8 @@ fn own_boat(world: &World, vehicle: VehicleId, fault: Fault) -> OwnBoat {
         _ => nav.psi_rad,
     };
     if shown_rad != nav.psi_rad {
-        // Velocity over the ground in the boat's axes: the receiver does not depend on the compass.
+        // Velocity over the ground along the boat's axes: the receiver does not depend on the
+        // compass.
         let velocity = nav.velocity_m_s();
         nav.psi_rad = shown_rad;
         let body = body_from_ned(Rotation::from_heading(nav.psi_rad), velocity);
@@ -270,7 +271,7 @@ fn effective(order: Order, fault: Fault) -> Order {
     }
 }
 
-/// Legitimate failsafes: those that the receiver itself reports.
+/// Legitimate failsafes: those reported by the receiver itself.
 fn is_of_receiver(cause: &str) -> bool {
     [
         "the fix has quality",

@@ -1,5 +1,5 @@
 //! The Surveyor of the boat files approaches its geofence at every speed, in every shipped sea. The
-//! watch stops it in time for it to come to rest inside.
+//! geofence watch stops it early enough for it to come to rest inside.
 //!
 //! `SQUALL_APPROACHES=10000 cargo test --locked --release --workspace --test geofence --
 //! --nocapture` runs more.
@@ -28,31 +28,31 @@ const TICK: SimTime = SimTime(50_000_000);
 /// ticks: 0.2 s and 0.1 s.
 const FIX_TICKS: usize = 4;
 const COMMAND_TICKS: u32 = 2;
-/// The edge of the geofence lies this far north of the middle of the field, m.
+/// Distance of the geofence's edge north of the middle of the field, m.
 const EDGE_M: f64 = 500.0;
-/// A stopped boat is observed for this long, s: on water at rest, until it lies still; elsewhere it
-/// continues to drift.
+/// Time for which a stopped boat is observed, s: on water at rest, until it lies still; elsewhere
+/// it continues to drift.
 const STILL_S: f64 = 60.0;
 const DRIFTING_S: f64 = 20.0;
-/// An approach that has not reached the edge by this time ends, s.
+/// Time after which an approach that has not reached the edge ends, s.
 const LONGEST_S: f64 = 150.0;
 
-/// A boat that is farther from the edge than this may manoeuvre as it likes, m.
+/// Distance from the edge beyond which a boat may manoeuvre freely, m.
 const ROOM_M: f64 = 30.0;
 
-/// An approach: how fast, on which heading, from how far.
+/// An approach: its speed, heading and initial distance.
 struct Approach {
     sea: usize,
     speed_m_s: f64,
     heading_rad: f64,
-    /// The boat turns by this much now and then, rad.
+    /// Angle by which the boat turns occasionally, rad.
     turn_rad: f64,
     from_m: f64,
     seed: u64,
 }
 
-/// How an approach ended: by how much the boat crossed, m (negative inside), how far it came to
-/// rest from where it was stopped, and how far from the edge that was.
+/// How an approach ended: by how much the boat crossed the edge (m, negative inside), its distance
+/// at rest from where it was stopped, and the distance of that place from the edge.
 struct Ended {
     crossed_m: f64,
     went_m: f64,
@@ -91,8 +91,8 @@ fn approach(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
     })
 }
 
-/// Plays well inside: heads for another point every few seconds, at changing speeds, and now and
-/// then astern.
+/// Manoeuvres well inside: heads for a new point every few seconds, at changing speeds, and
+/// occasionally astern.
 fn play(approach: &Approach, boat: &Boat, sea: &Sea) -> Option<Ended> {
     sail(approach, boat, sea, |now, at| {
         let mut stream = Stream::new(approach.seed + (now.as_s() / 7.0) as u64, "test/play");
@@ -229,12 +229,12 @@ fn drawn(i: u64, seas: usize) -> Approach {
     }
 }
 
-/// How many approaches to run.
+/// The number of approaches to run.
 fn count() -> u64 {
     std::env::var("SQUALL_APPROACHES").map_or(1000, |text| text.parse().expect("a number"))
 }
 
-/// Runs approaches on all cores, and returns their numbers with their ends.
+/// Runs approaches on all cores, and returns their numbers and outcomes.
 fn on_all_cores(
     count: u64,
     seas: &[PathBuf],

@@ -36,7 +36,7 @@ impl Afloat {
         Afloat { game, water, link }
     }
 
-    /// Sets the boat going like a back seat that then dies: it stays at 43 %.
+    /// Sets the boat in motion like a back seat that then dies: it stays at 43 %.
     fn set_going(&self) {
         let mut stream = TcpStream::connect(&self.water.back_seat).expect("it accepts");
         stream
@@ -163,7 +163,7 @@ fn enter_in_the_gateways_own_terminal_triggers_an_e_stop() {
     let gateway = afloat.command();
     let words = std::iter::once(gateway.get_program()).chain(gateway.get_args());
     let words: Vec<&str> = words.map(|word| word.to_str().expect("UTF-8")).collect();
-    // Give it a terminal.
+    // Provide a terminal.
     let mut command = Command::new("script");
     command
         .args(["-qfec", &words.join(" "), "/dev/null"])
@@ -264,7 +264,7 @@ impl Drop for Wire {
 
 #[test]
 fn the_guard_stops_a_boat_on_every_kind_of_link_when_its_gateway_is_killed_or_suspended() {
-    // Thrust zero comes first: a gateway that sends only standby omits it.
+    // Zero thrust comes first: a gateway that sends only standby omits it.
     let zero = "$PSEAC,T,0,0,0,*";
     let standby = "$PSEAC,L,0,0,0,*";
     for listen in ["tcp://127.0.0.1:0", "udp://127.0.0.1:0", "pty"] {

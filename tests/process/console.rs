@@ -1,4 +1,4 @@
-//! The operator console: stops take every path, and count as complete when the boats report them.
+//! The operator console: stops use every path, and count as complete when the boats report them.
 
 use crate::boat_alone::Wire;
 use crate::support::{LIMIT, Process, Sim, gateway_args, printed_by, refused, temporary};
@@ -99,7 +99,7 @@ impl Console {
             .expect("it reads");
     }
 
-    /// Waits for lines with these beginnings, in any order; returns their times, ms.
+    /// Waits for lines that begin with these strings, in any order; returns their times, ms.
     fn wait_for(&self, beginnings: &[&str]) -> Vec<u128> {
         let mut left = beginnings.to_vec();
         let mut times = Vec::new();
@@ -136,7 +136,7 @@ impl Console {
         );
     }
 
-    /// Waits for a complaint that contains these words.
+    /// Waits for an error that contains these words.
     fn wait_for_complaint(&mut self, words: &str) {
         let start = Instant::now();
         while !self.complained.contains(words) {
@@ -176,10 +176,10 @@ fn a_console_stops_one_boat_or_all_and_releases_them() {
     ]);
     // Enter alone stops both boats.
     console.ask("", &ALL_STOPPED);
-    // A stop takes every path. On a busy machine the slowest copy arrives after the reports, and
-    // one that arrived after the release would stop the boats again, as it should.
+    // A stop uses every path. On a busy machine, the slowest copy arrives after the reports; a copy
+    // that arrived after the release would stop the boats again, as it should.
     std::thread::sleep(Duration::from_secs(2));
-    // A stop of one boat outlasts the release of all.
+    // A stop of one boat remains in force after the release of all.
     console.say("all release");
     console.wait_for(&["red_one  disarmed"]);
     console.say("blue_one arm");
@@ -231,7 +231,7 @@ fn a_boat_that_does_not_report_its_stop_fails_the_console_and_tell() {
         !status.success() && said.contains("red_one does not report that it has stopped: disarmed"),
         "{said}"
     );
-    // Its stop was repeated for as long as the console ran.
+    // The stop was repeated for as long as the console ran.
     fleet.gateways[1].signal("CONT");
     let mut console = fleet.console_of(&["red_one  e-stopped"]);
     console.ask("all estop", &ALL_STOPPED);

@@ -5,7 +5,7 @@ use std::net::TcpListener;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// How long a command may take to end.
+/// Time within which a command must end.
 const END_MAX: Duration = Duration::from_secs(2);
 
 /// Commands, with the words that this test fills in.
@@ -69,7 +69,7 @@ fn sigterm_ends_every_command_within_two_seconds() {
     let recording = format!("{folder}/game.mcap");
     printed(&["sim", "attack_1v1", "--join-s", "0", "--record", &recording]);
     let sim = Sim::start("patient", &["--join-s", "600"]);
-    // It accepts connections and never answers.
+    // It accepts connections but never answers.
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let silent = listener.local_addr().expect("it is bound");
     let words = [

@@ -85,7 +85,7 @@ impl Gateway {
         }
     }
 
-    /// The reply to another node that requests a boat.
+    /// The reply to a different node that requests a boat.
     fn join(&self, other: &Bus, vehicle: &str) -> JoinReply {
         join(
             other,
@@ -209,7 +209,7 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
             .is_some_and(|newest| newest.given_ns > before)
     });
 
-    // Its agent dies: it holds, and from now on gets no orders.
+    // Its agent dies: the boat holds, and from now on gets no orders.
     agent.kill();
     gateway.sail_until("a boat without an agent holds", Gateway::is_held);
     sim.wait_for_event("agent_lost", "blue_one");
@@ -225,7 +225,7 @@ fn a_real_boat_has_one_gateway_and_holds_without_navigation_or_agent() {
             && gateway.is_held()
     );
 
-    // Its gateway dies: another may join, and the old one's reports are refused.
+    // Its gateway dies: a new one may join, and reports of the old one are refused.
     gateway.bus.close();
     wait_until("the boat is free again", || {
         gateway.join(&other, "blue_one") != busy

@@ -21,7 +21,7 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Margin on a busy machine beyond the documented time.
+/// Margin beyond the documented time, for a busy machine.
 const SLACK: Duration = Duration::from_millis(1500);
 
 /// A thruster that is commanded to stop changes by a fifth of its range per second, with a lag of
@@ -36,7 +36,7 @@ const STANDBY: &str = "$PSEAC,T,0,0,0,*0C\r\n$PSEAC,L,0,0,0,*14\r\n";
 pub(crate) struct Water {
     _emulator: Process,
     _sim: Sim,
-    /// The addresses for a back seat and, if there is one, for a primary operator.
+    /// The addresses for a back seat and, if there is one, a primary operator.
     pub(crate) back_seat: String,
     primary: Option<String>,
     /// The newest true state of the water.
@@ -91,7 +91,7 @@ impl Water {
         }
     }
 
-    /// The boat's speed, m/s, and whether its thrusters are stopped.
+    /// The boat's speed (m/s), and whether its thrusters are stopped.
     pub(crate) fn boat(&self) -> (f64, bool) {
         let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
         boat.map_or((0.0, true), |boat| {
@@ -112,7 +112,7 @@ pub(crate) struct Loop {
 }
 
 impl Loop {
-    /// Starts a boat that is under way on its agent's orders.
+    /// Starts a boat that is under way, following its agent's orders.
     fn under_way(watchdog: &str) -> Loop {
         Loop::of(
             &["--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog],
@@ -120,7 +120,7 @@ impl Loop {
         )
     }
 
-    /// Starts a boat that is under way, with these options of emulator and gateway.
+    /// Starts a boat that is under way, with these options for emulator and gateway.
     pub(crate) fn of(emulator: &[&str], gateway: &[&str]) -> Loop {
         let all = Loop::begin(emulator, &[&["--arm"], gateway].concat());
         all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
@@ -143,7 +143,7 @@ impl Loop {
         }
     }
 
-    /// The boat's speed, m/s, and whether its thrusters are stopped.
+    /// The boat's speed (m/s), and whether its thrusters are stopped.
     pub(crate) fn boat(&self) -> (f64, bool) {
         self.water.boat()
     }
@@ -206,7 +206,7 @@ impl Loop {
         self.wait_for_state("disarmed");
     }
 
-    /// Arms it as soon as it is ready.
+    /// Arms the boat as soon as it is ready.
     pub(crate) fn arm(&self) {
         wait_until("it can be armed", || {
             self.ask(&OperatorCommand::Arm).refused.is_none()
@@ -214,13 +214,13 @@ impl Loop {
         self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
     }
 
-    /// Ends the gateway: the boat serves one program at a time.
+    /// Ends the gateway, because the boat serves one program at a time.
     pub(crate) fn end_gateway(&mut self) {
         self.gateway.signal("INT");
         self.gateway.wait();
     }
 
-    /// Starts another gateway, with these options.
+    /// Starts a new gateway with these options.
     pub(crate) fn restart_gateway(&mut self, more: &[&str]) {
         self.gateway = start_gateway(&self.sim, self.proxy.port, more);
         self.await_gateway();
@@ -232,7 +232,7 @@ impl Loop {
         });
     }
 
-    /// Checks that a killed agent stops the boat, and that only an operator arms it again.
+    /// Checks that a killed agent stops the boat, and that only an operator can arm it again.
     pub(crate) fn outlive_an_agent(&mut self) {
         self.agents.kill();
         self.stops_within(Duration::from_secs(1));
@@ -307,7 +307,7 @@ fn the_end_of_a_game_disarms_the_boat_without_a_failsafe() {
     wait_until("it is disarmed", || {
         tell(&game, "status").contains("blue_one: disarmed")
     });
-    // Longer than an order is valid.
+    // Longer than the validity of an order.
     std::thread::sleep(Duration::from_secs(2));
     let status = tell(&game, "status");
     assert!(!status.contains("failsafe"), "{status}");
@@ -481,7 +481,7 @@ fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
 /// The games through gateways have this scenario.
 const MIXED: &str = "scenarios/games/mixed_2v2.toml";
 
-/// Plays a game through the gateways of this file and emulated boats: no boat is lost, and the
+/// Plays a game through gateways with this file and emulated boats: no boat is lost, and the
 /// gateways' recordings are replayed. Returns its result.
 pub(crate) fn emulated_game(gateways: &str) -> Value {
     let dir = temporary();
@@ -523,7 +523,7 @@ pub(crate) fn assert_no_boat_was_lost(result: &Value) {
     }
 }
 
-/// The sum of a count of all teams.
+/// The sum of a count over all teams.
 pub(crate) fn count(result: &Value, what: &str) -> u64 {
     let teams = result["counts"]["teams"].as_object().expect("teams");
     teams

@@ -1,4 +1,4 @@
-//! Helm queries during a game, and a boat that gets another strategy.
+//! Helm queries during a game, and a boat that gets a new strategy.
 
 use crate::support::{FOUR, Process, Sim, helm, own, printed, squall, temporary};
 use primitives::VehicleId;

@@ -15,10 +15,10 @@ use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// zenoh closes a silent link after ten seconds, and may take ten more to close it.
+/// zenoh closes a silent link after ten seconds, and closing may take ten more.
 const AFTERMATH: Duration = Duration::from_secs(25);
-/// A game that reports no progress for this long has stopped. It reports ten times a second; the
-/// rest allows for a busy machine.
+/// Time without progress reports after which a game counts as stopped. It reports ten times a
+/// second; the rest allows for a busy machine.
 const STANDSTILL: Duration = Duration::from_millis(1500);
 /// Both paces: as fast as possible, and by the clock, which waits for no node.
 const PACES: [&str; 2] = ["lockstep", "200x"];
@@ -248,7 +248,7 @@ fn a_sim_with_unread_output_continues() {
 /// Time limit from an E-stop to the order for the boat.
 const PROMISED: Duration = Duration::from_millis(200);
 
-/// Waits for an order to hold (or not to) while the boat runs on; returns its time.
+/// Waits for an order to hold (or not to) while the boat continues; returns its time.
 fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool) -> Instant {
     let start = Instant::now();
     loop {
@@ -264,7 +264,7 @@ fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool
     }
 }
 
-/// Waits until the boat is driven again steadily, so that the next hold is that of an E-stop.
+/// Waits until the boat is driven steadily again, so that the next hold is due to an E-stop.
 fn driven(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway) {
     let mut driven = 0;
     while driven < 5 {

@@ -1,4 +1,4 @@
-//! The game's address and token: nodes that start before their sim or outlive it find them by
+//! The game's address and token: nodes that start before their sim or outlive it find both by
 //! themselves.
 
 use crate::support::{
@@ -16,7 +16,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// A user who gives no command an address or a token.
+/// A user who gives commands neither an address nor a token.
 struct User(TempDir);
 
 impl User {
@@ -148,7 +148,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_requires_its_token() {
         .expect("the token is known")
         .expect("an answer");
     assert_eq!(reply.status.vehicle, "blue_one");
-    // At its control port, and by a command that gets neither token nor address.
+    // At its control port, and by a command that is given neither token nor address.
     for command in ["estop", "release"] {
         printed_by(user.squall(&["gateway", "tell", "blue_one", command]));
     }

@@ -1,4 +1,4 @@
-//! Policies outside the helm: another program proposes actions, and the helm weighs them against
+//! Policies outside the helm: a separate program proposes actions, and the helm weighs them against
 //! staying inside the field.
 
 use crate::support::{Sim, own};
@@ -11,8 +11,8 @@ use std::time::Duration;
 
 const ME: VehicleId = VehicleId(0);
 
-/// A policy in another program: it receives the picture and always wants to drive north in a
-/// zigzag. Now and then it is slow.
+/// A policy in a separate program: it receives the picture and always wants to drive north in a
+/// zigzag. Occasionally it is slow.
 fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
     let publisher = bus
         .publisher(topic::policy(name, &info.scenario, ME), Priority::Normal)
@@ -33,7 +33,7 @@ fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
         if stamp.seq.is_multiple_of(7) {
             std::thread::sleep(Duration::from_millis(3));
         }
-        // Nonsense in between has no effect.
+        // Invalid messages in between have no effect.
         publisher
             .send(&PolicyProposal {
                 course_rad: f64::NAN,
@@ -111,7 +111,7 @@ fn a_boat_follows_a_policy_but_not_out_of_the_field_and_the_game_is_the_same_aga
         "it stayed inside"
     );
     assert_eq!(outcome["counts"]["boats"]["blue_1"]["agents_lost"], 0);
-    // Without a behaviour that keeps it inside, the same policy drives it out.
+    // Without a behaviour that keeps the boat inside, the same policy drives it out.
     let (_, frames) = play(false, true);
     assert!(
         frames

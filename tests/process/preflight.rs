@@ -66,7 +66,7 @@ fn a_boat_is_armed_with_a_passed_report_and_without_one_in_somebodys_name_alone(
     all.arm();
     all.end_gateway();
 
-    // The report of another boat does not count.
+    // The report of a different boat does not count.
     let other = std::fs::read_to_string(&report)
         .expect("it is written")
         .replace("blue_one", "red_one");

@@ -66,7 +66,8 @@ impl Proxy {
     }
 }
 
-/// Carries bytes one way. A connection that has begun to swallow never returns the swallowed bytes.
+/// Transfers bytes one way. A connection that has begun to swallow never returns the swallowed
+/// bytes.
 fn pass(mut from: TcpStream, mut into: TcpStream, state: &AtomicU8) {
     let mut buffer = [0; BUFFER];
     let mut swallowing = false;

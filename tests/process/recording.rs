@@ -179,7 +179,7 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
 }
 
 /// Runs the program, which must fail, on a disk that is full after one or two MiB, depending on the
-/// shell's block size; returns the last line of its error text.
+/// shell's block size; returns the last line of its error output.
 #[cfg(unix)]
 fn refused_on_a_full_disk(args: &[&str]) -> String {
     refused(squall_on_a_disk_of(2048, args))

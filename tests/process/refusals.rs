@@ -1,5 +1,5 @@
-//! Agents that send invalid data: it is rejected with a counted reason, and does not affect the
-//! game.
+//! Agents that send invalid data: the data is rejected with a counted reason, and does not affect
+//! the game.
 
 use crate::support::{FOUR, Sim, join};
 use bus::{Bus, Latest, Priority, Publisher};

@@ -69,7 +69,7 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
     let _agents = [sim.agent(&FOUR[..2]), sim.agent(&FOUR[2..])];
     sim.play_on(2.0);
     let paused_s = shore.pause().now_s;
-    // It repeats that it is paused, always with the same time.
+    // The sim repeats that the game is paused, always with the same time.
     for _ in 0..5 {
         shore.run.visit(|run| run.now_s = -1.0);
         assert_eq!(

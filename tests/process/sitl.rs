@@ -1,4 +1,4 @@
-//! A boat for ArduPilot's firmware: a stand-in speaks the firmware's side of its JSON back end.
+//! A boat for ArduPilot's firmware: a stand-in implements the firmware's side of its JSON back end.
 
 use crate::support::{LIMIT, Process, Sim, newest, stderr, wait_within};
 use messages::{Frame, topic};

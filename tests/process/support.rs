@@ -55,22 +55,22 @@ pub(crate) fn run(args: &[&str]) -> Output {
     squall(args).output().expect("the program starts")
 }
 
-/// The program's standard output as text.
+/// The program's standard output as a string.
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// The program's standard error as text.
+/// The program's standard error as a string.
 pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Runs the program, which must fail; returns its error text.
+/// Runs the program, which must fail; returns its error output.
 pub(crate) fn refusal_of(args: &[&str]) -> String {
     refused(squall(args))
 }
 
-/// Runs a command, which must fail; returns its error text.
+/// Runs a command, which must fail; returns its error output.
 pub(crate) fn refused(mut command: Command) -> String {
     let output = command.output().expect("the program starts");
     assert!(!output.status.success(), "{command:?} works");
@@ -105,7 +105,7 @@ pub(crate) fn temporary() -> TempDir {
     tempfile::tempdir().expect("a temporary directory")
 }
 
-/// Waits until a condition is true; returns how long it took.
+/// Waits until a condition is true; returns the time taken.
 pub(crate) fn wait_until(what: &str, is_so: impl FnMut() -> bool) -> Duration {
     wait_within(LIMIT, what, is_so)
 }
@@ -180,7 +180,7 @@ pub(crate) fn result_of(args: &[&str]) -> Value {
 }
 
 /// Checks that each seed gives one game, byte for byte, in one process and across processes, and
-/// that seeds differ.
+/// that different seeds give different games.
 pub(crate) fn assert_a_game_each(game: &str, seeds: &[&str]) {
     let mut digests = Vec::new();
     for seed in seeds {
@@ -225,7 +225,7 @@ impl Process {
         Process::start(command)
     }
 
-    /// Starts a command; returns the lines of its standard output, too.
+    /// Starts a command; also returns the lines of its standard output.
     pub(crate) fn with_lines(
         mut command: Command,
     ) -> (Process, impl Iterator<Item = String> + use<>) {
@@ -258,13 +258,13 @@ impl Process {
         ended.expect("it has ended")
     }
 
-    /// Waits for it to fail; returns its piped standard error.
+    /// Waits for the process to fail; returns its piped standard error.
     pub(crate) fn refusal(&mut self) -> String {
         assert!(!self.wait().success());
         self.errors()
     }
 
-    /// Its piped standard error, when it has ended.
+    /// The piped standard error of the process, once it has ended.
     pub(crate) fn errors(&mut self) -> String {
         let mut said = String::new();
         self.0

@@ -1,11 +1,11 @@
-//! No content of a scenario file crashes the program.
+//! The program crashes on no content of a scenario file.
 
 use crate::kinds::KINDS;
 use crate::{files, written};
 use proptest::prelude::*;
 use std::path::PathBuf;
 
-/// Checks `bytes` as every kind of file. Any answer is allowed, but problems must have places.
+/// Checks `bytes` as every kind of file. Any result is allowed, but problems must have places.
 fn check_as_all_kinds(bytes: &[u8]) {
     let folder = tempfile::tempdir().unwrap();
     let in_folders = KINDS.iter().map(|kind| format!("{}/x.toml", kind.folder()));

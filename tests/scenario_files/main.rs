@@ -18,7 +18,7 @@ fn shipped(path: &str) -> PathBuf {
         .join(path)
 }
 
-/// The shipped files of a kind, in order.
+/// The shipped files of the given kind, in order.
 fn files(kind: Kind) -> Vec<PathBuf> {
     let folder = std::fs::read_dir(shipped(kind.folder())).unwrap();
     let mut files: Vec<PathBuf> = folder.map(|entry| entry.unwrap().path()).collect();

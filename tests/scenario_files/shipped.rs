@@ -353,7 +353,7 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
     }
 }
 
-/// The values in lists; whole numbers like all others.
+/// The values in lists; integers like all others.
 fn flat(value: &Value) -> Vec<String> {
     match value {
         Value::Array(values) => values.iter().flat_map(flat).collect(),
@@ -406,7 +406,7 @@ fn keys(schema: &Value) -> Vec<String> {
     }
 }
 
-/// A folder with the files that examples extend, and the model that one of them names.
+/// A folder with the files that examples extend, and the model named by one of them.
 fn folder_of_bases() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (from, to) in [
@@ -445,7 +445,7 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
             examples.push((kind, written(folder.path(), &name, &text), text));
         }
     }
-    // Join all texts of a kind: there are two kinds of boat.
+    // Join all contents for a kind: there are two kinds of boat.
     let mut texts = BTreeMap::<&str, String>::new();
     for (kind, path, text) in &examples {
         let checked =
@@ -470,7 +470,7 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
 #[test]
 fn the_examples_of_the_handbook_are_sound() {
     let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
-    // They are written beside the shipped files that they name.
+    // They are written next to the shipped files that they name.
     let folder = tempfile::tempdir().unwrap();
     for path in KINDS.iter().flat_map(|kind| files(*kind)) {
         let text = std::fs::read_to_string(&path).unwrap();

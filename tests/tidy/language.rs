@@ -1,10 +1,10 @@
-//! Checks the language of documents and of the program's texts, and the targets of links.
+//! Checks the language of documents and of the program's strings, and the targets of links.
 
 use crate::rule::Breaches;
 use crate::text::{code_of, prose};
 use crate::tree::Tree;
 
-/// Maximum length of a sentence in a document, words. Half as long is better.
+/// Maximum length of a sentence in a document, words. Half of that is better.
 const WORDS_MAX: usize = 40;
 
 /// Phrases that a native engineer would not write, each with its replacement.
@@ -178,7 +178,7 @@ pub(crate) fn links(tree: &Tree) -> Breaches {
     breaches
 }
 
-/// The path of a file that the document at `path` names.
+/// The path of a file named in the document at `path`.
 fn beside(path: &str, file: &str) -> String {
     let mut parts: Vec<&str> = path.split('/').collect();
     parts.pop();

@@ -1,7 +1,7 @@
 //! House rules that a compiler does not check: imports between crates, file lengths, promises in
 //! documents.
 //!
-//! Every rule reads a [`Tree`] of texts and returns its breaches. The first test checks the
+//! Every rule reads a [`Tree`] of file contents and returns its breaches. The first test checks the
 //! repository against all rules. The second breaks each rule in turn, as listed in `breaches.txt`,
 //! so that a rule that no longer works is detected.
 
@@ -15,7 +15,7 @@ use rule::{Breaches, LINES_MAX, RULES};
 use std::path::PathBuf;
 use tree::Tree;
 
-/// The files described in a text beside this one: each begins with a line with its path.
+/// The files described in the file `text`: each begins with a line with its path.
 fn files_of(text: &str) -> Vec<(String, String)> {
     let text =
         std::fs::read_to_string(root().join("tests/tidy").join(text)).expect("it can be read");
@@ -27,7 +27,7 @@ fn files_of(text: &str) -> Vec<(String, String)> {
     files.map(file).collect()
 }
 
-/// The smallest tree that meets every rule.
+/// The smallest tree that complies with every rule.
 fn sound_tree() -> Tree {
     Tree {
         root: PathBuf::new(),

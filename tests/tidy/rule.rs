@@ -18,7 +18,7 @@ const MAY_IMPORT: [(&str, &[&str]); 25] = [
     ("scenario", &["onnx", "primitives", "rules"]),
     ("messages", &["primitives", "rules", "scenario"]),
     ("bus", &["primitives", "scenario", "messages"]),
-    // For tests only: no program links it.
+    // For tests only: not linked by any program.
     (
         "simulated_network",
         &["primitives", "scenario", "messages", "bus"],
@@ -416,8 +416,8 @@ fn architecture(tree: &Tree) -> Breaches {
     documents.into_iter().flat_map(breaches).collect()
 }
 
-/// Readers' questions, each with the file in which readers look first and a text that it must
-/// contain. This detects a file that is renamed or loses its subject.
+/// Readers' questions, each with the file in which readers look first and a string that it must
+/// contain. This detects a file that is renamed or no longer covers its subject.
 fn questions(tree: &Tree) -> Breaches {
     let Some(text) = tree.text(QUESTIONS) else {
         return vec![format!("{QUESTIONS}: is missing")];

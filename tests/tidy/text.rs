@@ -74,7 +74,7 @@ fn package_of(line: &str) -> Option<String> {
     )
 }
 
-/// Every text in single backticks outside fenced blocks, with its line number.
+/// Every string in single backticks outside fenced blocks, with its line number.
 pub(crate) fn quoted(text: &str) -> impl Iterator<Item = (usize, String)> {
     prose(text).flat_map(|(number, line)| {
         line.split('`')
@@ -101,8 +101,8 @@ pub(crate) fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// Whether a word in backticks is a path of this repository: it has a folder or a file extension,
-/// and no character of commands, keys or Rust.
+/// Whether a word in backticks is a path in this repository: it has a folder or a file extension,
+/// and no character used in commands, keys or Rust.
 pub(crate) fn is_path(word: &str) -> bool {
     let foreign = word.starts_with(['/', '-', '.', '~']) && !word.starts_with(".ci/")
         || word.starts_with(concat!("squ", "all/"));

@@ -1,4 +1,4 @@
-//! The texts of a repository.
+//! The file contents of a repository.
 
 use crate::rule::Breaches;
 use crate::text::code_of;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The files that rules check: path from the root (with `/`), and text.
+/// The files that rules check: path from the root (with `/`), and content.
 pub(crate) struct Tree {
     pub(crate) root: PathBuf,
     pub(crate) files: BTreeMap<String, String>,
@@ -70,7 +70,7 @@ impl Tree {
         known(path) || known(&format!("{path}.rs"))
     }
 
-    /// The text of a file, including files that no other rule checks.
+    /// The content of a file, including files that no other rule checks.
     pub(crate) fn text(&self, path: &str) -> Option<String> {
         let read = || {
             (!self.root.as_os_str().is_empty())

@@ -20,12 +20,12 @@ fn is_active(report: &HelmReport) -> bool {
         .any(|b| b.name == "it" && b.run_state == RunState::Active)
 }
 
-/// At the centre of the field.
+/// A boat at the centre of the field.
 fn here() -> Picture {
     alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
 }
 
-/// With one contact; all others are far away.
+/// The same with one contact; all other boats are far away.
 fn with_contact(own: Boat, contact: Boat) -> Picture {
     picture(
         0.0,
@@ -47,7 +47,7 @@ fn boat(text: &str) -> Boat {
     }
 }
 
-/// Whether a decision has the expected course and speed, or none.
+/// Whether a decision has the expected course and speed, or there is none as expected.
 fn is_wanted(report: &HelmReport, want: &str) -> bool {
     match report
         .course_deg
@@ -109,7 +109,7 @@ fn every_behaviour_alone_decides_as_the_cases_say() {
     assert!(decided >= 30, "only {decided} cases");
 }
 
-/// A boat with this maximum turn rate, rad/s, that takes a second to change its speed, simulated
+/// A boat with this maximum turn rate (rad/s) that takes a second to change its speed, simulated
 /// for this many tenths of a second.
 fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat, steps: u32) -> Vec<Boat> {
     let mut helm = helm(&only(behaviour));
@@ -244,7 +244,7 @@ fn a_boat_in_the_way_is_passed_and_one_astern_changes_nothing() {
     let scene = |x: f64| with_contact(Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(x, 0.0));
     let scenario = without_safety(behaviours);
     let course_rad = steered(&mut helm(&scenario), &scene(13.0)).0.to_radians();
-    // It keeps its motion for a moment before it turns.
+    // The boat keeps its motion for a moment before it turns.
     let miss_m = ((13.0 - 2.0 * 0.7) * libm::cos(course_rad)).abs();
     assert!(
         miss_m > 5.5,
@@ -309,8 +309,8 @@ fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
 
 #[test]
 fn a_point_within_the_turning_circle_does_not_hold_a_boat_in_an_orbit() {
-    // The boat turns at 0.3 rad/s at most: at 1.5 m/s on a circle of radius 5 m, around the first
-    // point initially.
+    // The boat turns at 0.3 rad/s at most: at 1.5 m/s it follows a circle of radius 5 m, initially
+    // around the first point.
     let points = "kind = 'waypoint'\npoints = [[0, 0], [60, 0]]\nspeed_m_s = 1.5\ncapture_radius_m = 1\nslip_radius_m = 2";
     let track = driven(
         points,
@@ -420,8 +420,8 @@ fn safety_arbitrates_what_a_policy_proposes() {
     );
     let ahead = with_contact(Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(14.0, 0.0));
     let (course_rad, speed_m_s) = advised(&ahead, east);
-    // It keeps its motion for a moment, then follows the decision for the eight seconds of the
-    // look-ahead.
+    // The boat keeps its motion for a moment, then follows the decision for the eight seconds of
+    // the look-ahead.
     let places = (0..=80).map(|i| 0.1 * f64::from(i) * speed_m_s);
     let from_m = |run_m: f64| {
         (
@@ -476,12 +476,12 @@ fn a_boat_that_came_too_near_halts_until_it_is_released() {
         (0.0, 3.1, false),
         (0.1, 2.9, true),
         (5.0, 9.9, true),
-        // Released by distance.
+        // Released because of the distance.
         (6.0, 10.1, false),
         (7.0, 4.0, false),
         (8.0, 2.0, true),
         (37.9, 2.0, true),
-        // Released by time: it does not halt again until it has been clear.
+        // Released because of the time: it does not halt again until it has been clear.
         (38.0, 2.0, false),
         (39.0, 1.0, false),
         (40.0, 11.0, false),

@@ -1,4 +1,4 @@
-//! A boat's knowledge of a scene, in the terms of strategies.
+//! A boat's knowledge of a scene, as it appears in strategies.
 
 use crate::scene::{Boat, decided, helm, picture, without_safety};
 use agent::HelmMind;
@@ -51,7 +51,7 @@ fn measures_are_of_one_place_or_between_two() {
             "{expression} is {got}, want {want}"
         );
     }
-    // A mate that is tagged, or on its way home with a flag, does not count.
+    // A teammate that is tagged, or on its way home with a flag, does not count.
     let changes: [fn(&mut OwnBoat); 2] = [|boat| boat.tagged = true, |boat| boat.carrying = 1];
     for change in changes {
         let mut other = scene.clone();
@@ -68,7 +68,7 @@ fn measures_are_of_one_place_or_between_two() {
 
 #[test]
 fn boats_of_the_team_go_on_while_their_fixes_drop_out() {
-    // Two boats that go east at 2 m/s, turn north, and have had no fix since 10 s.
+    // Two boats going east at 2 m/s that turn north, with no fix since 10 s.
     let [own, mate] = [Boat::at(-20.0, 0.0), Boat::at(-40.0, 0.0)];
     let far = [Boat::at(70.0, 30.0), Boat::at(70.0, -30.0)];
     for expression in ["distance(own_flag)", "distance(mate_carrier, own_flag)"] {
@@ -116,7 +116,7 @@ fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
         answer(&mut mine, &picture(0.1, own_x(-20.0), intruders(-10.0))),
         10.0
     );
-    // The mate is closer by a little, which may be noise; then by a lot.
+    // The teammate is closer: first slightly, which may be noise, then by a lot.
     assert_eq!(
         answer(&mut mine, &picture(0.2, own_x(-20.0), intruders(-46.0))),
         26.0
@@ -125,7 +125,7 @@ fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
         answer(&mut mine, &picture(0.3, own_x(-20.0), intruders(-60.0))),
         -1.0
     );
-    // The mate is busy: it has just tagged, is tagged, or carries a flag.
+    // The teammate is busy: it has just tagged a boat, is tagged, or carries a flag.
     let busy: [fn(&mut Picture); 3] = [
         |scene| scene.own[1].tag_ready_ns = primitives::SimTime::from_s(60.0),
         |scene| scene.own[1].tagged = true,
@@ -137,8 +137,8 @@ fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
         let expression = "known(assigned_intruder) ? distance(assigned_intruder) : -1";
         assert_eq!(answer(&mut asking(expression), &scene), 40.0);
     }
-    // Of two intruders, the one nearer to the flag gets the boat nearer to it; the other is left to
-    // this boat.
+    // The intruder nearer to the flag is assigned to the boat nearer to the flag; the other is left
+    // to this boat.
     let both = [Boat::at(-66.0, 0.0), Boat::at(-64.0, 0.0)];
     assert_eq!(answer(&mut mine, &picture(0.5, own_x(-20.0), both)), 46.0);
 }
@@ -150,7 +150,7 @@ fn a_boat_may_keep_out_of_the_reach_of_its_own_opponent_alone() {
             "[behaviour.avoid]\nkind = \"avoid_collision\"\ncontacts = \"{contacts}\"\n\
              [behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\n"
         );
-        // Boat 2 is the opponent, boat 3 its mate: both are near, and could tag the boat.
+        // Boat 2 is the opponent and boat 3 its teammate: both are near, and could tag the boat.
         let enemies = [own, own].map(|own| Boat {
             y: own.y + 5.0,
             ..own

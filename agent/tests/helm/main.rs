@@ -1,4 +1,4 @@
-//! Helm decisions, which apply programs to pictures; and observations of pictures.
+//! Helm decisions, in which programs are applied to pictures; and observations of pictures.
 
 mod behaviour;
 mod knowledge;

@@ -44,8 +44,8 @@ fn the_first_mode_whose_condition_holds_is_the_one() {
 
 #[test]
 fn every_shipped_strategy_takes_a_flag_home() {
-    // The medium defender may come across a flag in pursuit, and once held its station while
-    // carrying it.
+    // The medium defender may come across a flag while pursuing; once, it held its station while
+    // carrying one.
     for strategy in [
         "easy_attacker",
         "medium_attacker",
@@ -112,7 +112,7 @@ fn behaviours_live_and_post() {
         (run_state(&first, "drive"), run_state(&first, "rest")),
         (RunState::Active, RunState::Active)
     );
-    // Its duration has passed.
+    // The duration is over.
     assert_eq!(
         run_state(&at(&mut helm, 0.9, -30.0), "rest"),
         RunState::Active
@@ -121,7 +121,7 @@ fn behaviours_live_and_post() {
         run_state(&at(&mut helm, 1.0, -30.0), "rest"),
         RunState::Complete
     );
-    // Each reached point counts; after the last the list restarts.
+    // Each point reached counts; after the last one, the list restarts.
     for (at_s, x, laps) in [
         (2.0, -1.0, "1"),
         (3.0, 9.0, "2"),
@@ -182,7 +182,7 @@ fn mates_count_when_they_have_sent_everything_that_is_asked() {
         mine.receive(received);
         assert_eq!(weight(&mut mine), want, "{received:?}");
     }
-    // Messages from a boat that is not a mate, and about an unknown variable.
+    // Messages from a boat that is not a teammate, and messages about an unknown variable.
     mine.receive(&[
         Word {
             vehicle: VehicleId(2),
@@ -253,7 +253,7 @@ fn a_behaviour_reaches_the_end_of_its_time_and_time_is_counted_from_the_first_pi
     }
 }
 
-/// North or south: on its own side one has a slightly higher utility, beyond it the other.
+/// North or south: on the boat's own side one has a slightly higher utility, beyond it the other.
 const TWO_WAYS: &str = "[behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 10\n\
     [behaviour.north]\nkind = \"constant_heading\"\nheading_deg = 0\nbase_width_deg = 60\nweight = \"own_side ? 50 : 49\"\n\
     [behaviour.south]\nkind = \"constant_heading\"\nheading_deg = 180\nbase_width_deg = 60\nweight = \"own_side ? 49 : 50\"\n";

@@ -9,7 +9,7 @@ use primitives::{Ned, TeamId, VehicleId};
 use scenario::Scenario;
 
 const BLUE: TeamId = TeamId(0);
-/// Rounding error of a variable's text, m.
+/// Rounding error of a variable in printed form, m.
 const ROUNDING_M: f64 = 1e-3;
 
 /// A shipped game in which all boats compute their distance to these places.

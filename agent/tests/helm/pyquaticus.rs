@@ -13,7 +13,7 @@ use scenario::Scenario;
 use serde::Deserialize;
 use std::path::Path;
 
-/// Its values are in single precision with six digits.
+/// The values are in single precision with six digits.
 const TOLERANCE: f32 = 3e-6;
 /// Cooldown after a tag, s.
 const COOLDOWN_S: f64 = 60.0;
@@ -60,7 +60,7 @@ fn scenario(team_size: usize) -> Scenario {
     )])
 }
 
-/// The knowledge of a boat's team in a state.
+/// The knowledge of a boat's team in a given state.
 fn picture(state: &State, team: usize) -> Picture {
     let team_size = state.boats.len() / 2;
     let now = SimTime::from_s(NOW_S);
@@ -156,7 +156,7 @@ fn observations_are_those_of_the_program() {
     }
 }
 
-/// The absolute error of a value. Half a turn to either side is the same bearing.
+/// The absolute error of a value. Half-turns to either side are the same bearing.
 fn off(name: &str, got: f32, want: f32) -> f32 {
     let off = (got - want).abs();
     if name.ends_with("bearing") || name.ends_with("heading") {

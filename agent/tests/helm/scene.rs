@@ -20,8 +20,8 @@ pub(crate) fn scenario(strategy: &str) -> Scenario {
     ])
 }
 
-/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped
-/// files.
+/// The scenario of `game.toml` among these files, in which `SCENARIOS` stands for the folder of the
+/// shipped files.
 pub(crate) fn loaded(files: &[(&str, &str)]) -> Scenario {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -133,7 +133,7 @@ pub(crate) fn set_time(picture: &mut Picture, at_s: f64) {
     picture.own.iter_mut().for_each(|boat| boat.fix_ns = now);
 }
 
-/// Far from all other boats.
+/// A position far from all other boats.
 pub(crate) fn alone(at_s: f64, own: Boat) -> Picture {
     picture(
         at_s,
@@ -179,7 +179,7 @@ pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
     report
 }
 
-/// The course, degrees, and the speed, m/s, that the helm decides on.
+/// The course (degrees) and speed (m/s) on which the helm decides.
 pub(crate) fn steered(helm: &mut HelmMind, picture: &Picture) -> (f64, f64) {
     let report = decided(helm, picture);
     report

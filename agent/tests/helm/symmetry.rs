@@ -6,8 +6,8 @@ use messages::{Order, Picture};
 use primitives::stream::Stream;
 use primitives::{TeamId, VehicleId};
 
-/// The same scene with the other team in this one's place: rotated by half a turn about the datum,
-/// the centre of the field.
+/// The same scene seen by the other team: rotated by half a turn about the datum, which is the
+/// centre of the field.
 fn turned(picture: &Picture) -> Picture {
     let mut other = picture.clone();
     other.team = 1 - picture.team;

@@ -138,7 +138,7 @@ fn a_problem_that_was_cleared_is_as_new() {
         assert_eq!(old.len(), functions.len());
         let got: Choice = old.solve(preference);
         let want = solved(&grid, &functions, preference);
-        // The solver starts from its last result, so the number of evaluated points varies.
+        // The solver starts from its previous result, so the number of evaluated points varies.
         assert_eq!(
             got,
             Choice {

@@ -8,7 +8,7 @@ use primitives::stream::Stream;
 
 /// A random table of utilities.
 pub(crate) fn random_table(stream: &mut Stream, grid: &Grid) -> Table {
-    // Multiples of ten, for ties; every second course with full utility, or almost none.
+    // Multiples of ten, to cause ties; every second course with full utility, or almost none.
     let most = [2, 20][stream.below(2) as usize];
     let is_full: Vec<bool> = (0..grid.courses())
         .map(|_| stream.below(most) == 0)

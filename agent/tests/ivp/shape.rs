@@ -1,4 +1,4 @@
-//! The functions themselves, at points computed by hand or by another method.
+//! The functions themselves, at points computed by hand or by a different method.
 
 use crate::scene::within;
 use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Side};

@@ -2,11 +2,11 @@
 //! field, and how often hulls touch.
 //!
 //! Run `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT]
-//! [SEED]`. The default is 10,000 games of 120 s in calm water between boats of the kind
+//! [SEED]`. The default is 10,000 games of 120 s in calm water between boats from the file
 //! `surveyor_m1_8`. With the seed of a game, it only writes the files of that game, for `squall
-//! run`, which records and shows it. Every boat has a random strategy over `safety.toml`: places on
-//! the field and up to 20 m beyond it, pursuits, stations, headings, at any speed. Equal seeds give
-//! equal games.
+//! run`, which records and shows it. Every boat has a random strategy on top of `safety.toml`:
+//! places on the field and up to 20 m beyond it, pursuits, stations and headings, at any speed.
+//! Equal seeds give equal games.
 
 use analysis::HullRectangle;
 use primitives::VehicleId;
@@ -25,17 +25,17 @@ struct Tally {
     left: usize,
     /// Of those, within five seconds after hulls touched.
     left_pushed: usize,
-    /// Of those that were not pushed, by a boat within 15 m of another: it gave way, or chased.
+    /// Of those not pushed out, by a boat within 15 m of another, giving way or chasing.
     left_crowded: usize,
-    /// Times two hulls started to touch.
+    /// Times two hulls came into contact.
     touched: usize,
     /// Times two boats came within the collision distance of the rules.
     collided: usize,
 }
 
-/// A boat that leaves the field later than this after hulls touched was not pushed out, s.
+/// Time after hull contact from which a boat leaving the field no longer counts as pushed out, s.
 const PUSH_REMEMBERED_S: f64 = 5.0;
-/// Boats closer than this make each other give way, m.
+/// Distance below which boats make each other give way, m.
 const CROWD_M: f64 = 15.0;
 
 fn main() {
@@ -157,7 +157,7 @@ fn write(path: PathBuf, text: &str) {
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
 }
 
-/// A random program: one to three behaviours over the mandatory ones.
+/// A random program: one to three behaviours on top of the mandatory ones.
 fn program(scenarios: &Path, stream: &mut Stream) -> String {
     let mut text = format!(
         "base = \"{}/strategies/safety.toml\"\nabout = \"Random\"\n",
@@ -168,7 +168,7 @@ fn program(scenarios: &Path, stream: &mut Stream) -> String {
         let weight = stream.between(20.0, 100.0);
         text += &format!("[behaviour.b{i}]\nweight = {weight:.1}\n");
         text += &behaviour(stream);
-        // The first one is always active.
+        // The first behaviour is always active.
         if i > 0 {
             let conditions = [
                 "enemy_in_zone",

@@ -36,7 +36,7 @@ fn main() {
     }
 }
 
-/// The games that programs can play alone.
+/// The games that need no person and no real boat.
 fn shipped() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games");
     let entries = folder
@@ -74,7 +74,7 @@ fn print_game(path: &Path, scenario: &Scenario, seed: u64, until: SimTime) {
     );
 }
 
-/// CPU time of this thread, s: other load on the machine does not count.
+/// CPU time of this thread, s: other load on the machine is not counted.
 fn core_time_s() -> f64 {
     let path = "/proc/thread-self/schedstat";
     let text = std::fs::read_to_string(path)

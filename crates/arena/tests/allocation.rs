@@ -12,7 +12,8 @@ use std::path::Path;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Decisions until everything, captures and a tag, has happened once, so that every list has grown.
+/// Decisions until every kind of event, including captures and a tag, has occurred once, so that
+/// every list has grown.
 const WARM_UP: u64 = 4_100;
 
 #[test]
@@ -38,7 +39,7 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
         arena::decide(&mut contest, &mut runner);
         contest.advance();
         let used = heap.change();
-        // Only the event log grows, now and then.
+        // Only the event log grows, occasionally.
         if crowded || contest.events().len() > events || decision < WARM_UP {
             busy += 1;
         } else {

@@ -1,4 +1,4 @@
-//! Keys of a game: which nodes are admitted, what each may do, and the errors of those refused.
+//! Keys of a game: which nodes are admitted, what each may do, and the errors of refused nodes.
 
 use bus::keys::{Bundle, Identity, make};
 use bus::{Bus, BusError, Delivery, Net, Priority, Query, Watched, clock};
@@ -25,7 +25,7 @@ fn team(name: &str) -> Identity {
     Identity::Team(name.to_owned())
 }
 
-/// Keys for all identities, for a sim at these hosts, valid for this long.
+/// Keys for all identities and for a sim at these hosts, valid for this long.
 fn keys(hosts: &[&str], valid: Duration) -> tempfile::TempDir {
     bus::restart_for_keys().expect("the tests start again");
     let folder = tempfile::tempdir().expect("a folder");
@@ -211,7 +211,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
     );
 }
 
-/// Whether `to` receives what `from` publishes. It does not if only a later message has arrived.
+/// Whether `to` receives messages published by `from`. It does not if only a later message arrives.
 fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     let heard = Arc::new(Watched::new((false, false)));
     let [of_word, of_free] = [Arc::clone(&heard), Arc::clone(&heard)];
@@ -226,7 +226,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         })
         .expect("open"),
     );
-    // Over QUIC in datagrams, to which the same rights apply as to reliable messages.
+    // Over QUIC in datagrams, which are subject to the same rights as reliable messages.
     let publisher = |word| {
         from.publisher_with(key(word), Priority::Normal, Delivery::Newest)
             .expect("open")
@@ -239,7 +239,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         asked.send_raw(vec![1]).expect("open");
         sure.send_raw(vec![1]).expect("open");
     }
-    // Again, now that all nodes know each other.
+    // Once more, now that all nodes know each other.
     asked.send_raw(vec![1]).expect("open");
     heard.visit(|(_, free)| *free = false);
     sure.send_raw(vec![1]).expect("open");
@@ -252,7 +252,7 @@ fn check(who: &str, did: bool, words: &str, what: &str) {
     assert_eq!(did, may, "{who} {what}");
 }
 
-/// Topics that the sim publishes, and who receives them.
+/// Topics that the sim publishes, and their receivers.
 const HEARD: [(&str, &str); 9] = [
     ("frame", "observer operator"),
     ("picture/blue", "team-blue observer operator"),
@@ -293,7 +293,7 @@ const PUBLISHED: [(&str, &str); 17] = [
     ("run", ""),
     ("released", ""),
 ];
-/// Keys that others query, and whom the sim answers.
+/// Keys that others query, and the nodes that the sim answers.
 const ASKED: [(&str, &str); 11] = [
     (
         "scenario",
@@ -378,7 +378,7 @@ fn check_rights(transport: &str) {
             "{name} is told at once"
         );
     }
-    // An operator's query reaches the gateway of the boat, and no other.
+    // An operator's query reaches the gateway of the boat and no other.
     let operator = &nodes[5].1;
     for (i, who) in [(0, false), (2, true), (3, true), (4, false)] {
         let _queryable = nodes[i]

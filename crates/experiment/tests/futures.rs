@@ -10,7 +10,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-/// The moment from which futures differ, s.
+/// The time from which futures differ, s.
 const UNTIL_S: f64 = 5.0;
 
 fn strategy(name: &str) -> Box<Strategy> {
@@ -185,7 +185,7 @@ fn another_sea_takes_over_at_the_moment() {
     assert!(gale[before].2 > calm[before].2 + 10.0);
 }
 
-/// The report from few futures of the game.
+/// The report from a few futures of the game.
 fn development(past: &Past, baseline: &str, threads: usize) -> Report {
     let plan = Plan {
         futures: 60,

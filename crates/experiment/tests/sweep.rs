@@ -190,7 +190,7 @@ fn a_game_of_the_report_is_the_one_that_its_command_plays() {
     let played = played.expect("a game");
     assert_eq!((job.point, job.entry, job.seed, job.side), (2, 1, 6, 0));
     let command = plan.command(&job);
-    // The parsed form of these words: the same files, values and seed.
+    // These words in parsed form: the same files, values and seed.
     let setting = |key: &str, value: &str| format!("--set '{key}={value}'");
     for part in [
         setting("sea.wind.speed_m_s", "9"),
@@ -258,7 +258,8 @@ fn all_points_play_the_same_seeds_and_designs_cover_the_space() {
     for design in ["latin_hypercube", "sobol"] {
         let mut winds = winds(&with(design));
         winds.sort_by(f64::total_cmp);
-        // One in each of 30 intervals of a Latin hypercube; a Sobol sequence is about as even.
+        // One value in each of 30 intervals of a Latin hypercube; a Sobol sequence is about as
+        // even.
         let piece = |wind: &f64| ((wind - 1.0) / 8.0 * 30.0) as usize;
         let spare = if design == "sobol" { 2 } else { 0 };
         for (i, wind) in winds.iter().enumerate() {

@@ -137,7 +137,7 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
             "{of:?}"
         );
     }
-    // The attacker never loses to the idle entry, but as the second team it finds it in the way.
+    // The attacker never loses to the idle entry; as the second team, it finds it in the way.
     let report = Report::new(&plan, &records);
     let names: Vec<&str> = report.entries.iter().map(|row| row.name.as_str()).collect();
     assert_eq!(
@@ -156,7 +156,7 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
     assert!(there.score_difference > 0.0);
 }
 
-/// The results of one entry against another.
+/// The results of one entry against a particular opponent.
 fn cell<'a>(report: &'a Report, row: &str, column: &str) -> &'a Cell {
     let cell = report
         .matrix
@@ -254,8 +254,8 @@ fn all_opponents_of_a_seed_are_one_observation() {
         &["pav01", "idle", "easy_attackers"],
     ))
     .unwrap();
-    // The first entry always has 10 points more against one opponent than against the other. That
-    // adds no uncertainty to its mean, which is 6 to 10 in the five seeds.
+    // The first entry always scores 10 points more against one opponent than against the other.
+    // That adds no uncertainty to its mean, which is 6 to 10 in the five seeds.
     let seed = |seed: u64, score: u32| {
         let game = |sides: [usize; 2], score: [u32; 2]| record(seed, sides, score);
         [
@@ -404,7 +404,7 @@ fn a_tournament_that_is_stopped_keeps_whole_seeds() {
     });
     assert_eq!(records.len(), shown);
     assert!((3..40).contains(&shown), "{shown} games");
-    // Whatever games were running, three games are one and a half seeds.
+    // Whichever games were running, three games are one and a half seeds.
     let report = Report::new(&plan, &records[..3]);
     assert_eq!(
         (
@@ -451,7 +451,7 @@ fn boats_that_do_not_fit_into_their_spawn_area_fail_the_game_and_not_the_tournam
     let dir = tempfile::tempdir().unwrap();
     let game = dir.path().join("crowd.toml");
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
-    // Two boats lie in the rectangle in which a third would have to keep clear of them.
+    // Two boats are in the rectangle where a third would have to keep clear of them.
     let boats = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
                  [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
                  [[fleet]]\nteam = \"red\"\ncount = 1\n\

@@ -1,5 +1,5 @@
-//! Environment steps on one core with random actions, and the start of a new game in a batch.
-//! Each step is four agent steps, or two where helms play the other team.
+//! Environment steps on one core with random actions, and the start of a new game in a batch. Each
+//! step contains four agent steps, or two if helms play the other team.
 
 use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

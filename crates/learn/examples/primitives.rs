@@ -52,7 +52,7 @@ struct Played {
     looks: f64,
     /// Number of observations of untagged boats at home.
     at_home: f64,
-    /// Sums of three values: on guard, at the place that shields a mate, and clear of enemies.
+    /// Sums of three values: on guard, at the place that shields a teammate, and clear of enemies.
     among: [f64; 3],
 }
 

@@ -202,8 +202,8 @@ fn inputs_are_read_as_they_were_written_before_orders_had_a_time_and_no_older() 
     }
 }
 
-/// A message survives a round trip. If it is truncated, extended, in another byte order or from
-/// another version, it is rejected and the reason given.
+/// A message survives a round trip. If it is truncated, extended, in a different byte order or from
+/// a different version, it is rejected with the reason.
 fn survives_or_is_refused<M>(message: &M)
 where
     M: Message + serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,

@@ -1,4 +1,4 @@
-//! Networks allocate nothing in an evaluation, and little while a file is read.
+//! Networks allocate no memory in an evaluation, and little while a file is read.
 //!
 //! `stats_alloc` counts (see `sim/tests/allocation.rs`). There is a single test because the count
 //! covers the whole process.
@@ -10,7 +10,7 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Maximum memory for reading any file of 1 MiB, bytes.
+/// Maximum memory to read any file of 1 MiB, bytes.
 const FILE_COST_MAX: usize = 50 << 20;
 
 fn field(number: u8, content: &[u8]) -> Vec<u8> {

@@ -283,7 +283,7 @@ fn any_message_of_many_is_found_in_any_order() {
         all_of(&recording) == want,
         "read one after the other, they differ from those that the library reads"
     );
-    // 1013 is coprime to their number, so each occurs once.
+    // 1013 is coprime to the number of messages, so each message occurs once.
     for i in 0..want.len() {
         let place = i * 1013 % want.len();
         let message = recording.bag().message(place);
@@ -301,7 +301,7 @@ fn any_message_of_many_is_found_in_any_order() {
 fn a_file_cut_at_any_byte_opens_up_to_the_cut() {
     let whole = recorded(&[1.0, 2.0, 3.0, 4.0]);
     let all = all_of(&Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}")));
-    // A message ends exactly where its bytes do, except that a text is followed by a NUL.
+    // A message ends exactly where its bytes end, except that a string is followed by a NUL.
     let mut from = 0;
     let mut ends = Vec::new();
     for (topic, number, bytes) in &all {
@@ -446,8 +446,8 @@ fn place_of(part: &[u8], bytes: &[u8]) -> usize {
         .expect("it is there")
 }
 
-/// The position of the first schema, in the first chunk. The header is before it; without the
-/// header nothing opens.
+/// The position of the first schema, in the first chunk. The header comes before it; a file without
+/// a header cannot be opened.
 fn first_schema(bytes: &[u8]) -> usize {
     place_of(b"ros2msg", bytes)
 }

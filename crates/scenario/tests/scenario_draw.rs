@@ -53,7 +53,7 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
         "link = { delay_s = { uniform = [0.1, 0.2] } }",
     ))
     .unwrap();
-    // The files have served their purpose.
+    // The files are no longer needed.
     std::fs::remove_dir_all(dir.path()).unwrap();
     let recorded: Scenario = serde_json::from_str(&serde_json::to_string(&first).unwrap()).unwrap();
 

@@ -112,7 +112,7 @@ fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
         ..instead(&[("red", strategy)])
     };
     let scenario = load_with(&game, &overrides).unwrap();
-    // The files have served their purpose.
+    // The files are no longer needed.
     drop(dir);
     let other = scenario.of_seed(7).unwrap();
     assert_ne!(other.drawn, scenario.drawn);

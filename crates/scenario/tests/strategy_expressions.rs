@@ -90,8 +90,8 @@ fn number(program: &Program) -> &Expression {
     &wait.unwrap().duration_s.as_ref().unwrap().expression
 }
 
-/// The expressions of the accompanying file: whether it is a condition, its text, and its value (1
-/// for true).
+/// The expressions in the accompanying file: whether each is a condition, its source, and its value
+/// (1 for true).
 fn cases() -> Vec<(bool, &'static str, f64)> {
     let lines = include_str!("strategy_expressions.txt").lines();
     let lines = lines.filter(|line| !line.starts_with('#'));

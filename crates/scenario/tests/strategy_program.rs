@@ -219,10 +219,10 @@ fn what_can_be_is_allowed() {
             "distance(CF) > 1 && distance(CF) < 2; distance(CF) < 1.5",
             once,
         ),
-        // The distance to one place does not determine that to another.
+        // The distance to one place does not determine the distance to a different one.
         ("distance(CF) < 1; distance(CH) < 1", once),
         ("closing(opponent) < 0; closing(opponent) < 1", once),
-        // The same two numbers in another comparison may have any result.
+        // The same two numbers in a different comparison may have any result.
         (
             "score < enemy_score; score > enemy_score; score == enemy_score",
             once,
@@ -292,7 +292,7 @@ fn many_numbers_in_many_conditions_are_looked_at_before_long() {
     );
 }
 
-/// The name of a strategy with this text, or its problems; fails without a result in time.
+/// The name of a strategy with this content, or its problems; fails without a result in time.
 fn before_long(text: String) -> Result<String, Problems> {
     let (send, receive) = std::sync::mpsc::channel();
     std::thread::spawn(move || send.send(strategy_of(&text, &[]).map(|strategy| strategy.name)));

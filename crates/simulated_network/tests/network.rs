@@ -42,7 +42,7 @@ fn scenario() -> Scenario {
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Observations of a node, in order, each with its virtual time, s.
+/// Observations of a node in order, each with its virtual time in s.
 type Log = Arc<Mutex<Vec<(f64, String)>>>;
 
 /// A hub that listens for `time` and logs numbers and tokens.
@@ -73,7 +73,7 @@ fn add_hub(network: &SimulatedNetwork, time: Duration, log: &Log) -> usize {
     })
 }
 
-/// A leaf that shows a token and publishes a number every `every`.
+/// A leaf that declares a token and publishes a number every `every`.
 fn add_leaf(network: &SimulatedNetwork, numbers: u32, every: Duration) -> usize {
     network.node(Duration::from_millis(1), "leaf", move || {
         let bus = Bus::leaf(&net()).expect("the hub is up");

@@ -11,7 +11,7 @@ fn scenarios() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios")
 }
 
-/// A game whose first boat is of this kind, at the datum pointing north, on this sea.
+/// A game whose first boat is this one, at the datum pointing north, on this sea.
 fn game_of(boat: &scenario::Boat, sea: &scenario::sea::Sea, tick: SimTime) -> Scenario {
     let mut game = scenario::load(&scenarios().join("games/attack_1v1.toml"))
         .unwrap_or_else(|e| panic!("{e}"));

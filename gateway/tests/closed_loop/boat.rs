@@ -21,7 +21,7 @@ pub(crate) struct Boat {
 
 impl Boat {
     /// Advances by one step: thrust and speed have a lag of two seconds, thrust difference and turn
-    /// rate one of half a second.
+    /// rate a lag of half a second.
     pub(crate) fn step(&mut self, order: Order) {
         let (speed_m_s, turn_rad_s) = match order {
             Order::Hold => (0.0, 0.0),

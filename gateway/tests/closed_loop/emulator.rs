@@ -21,7 +21,7 @@ fn send(boat: &mut Emulator, body: &str) {
         Port::Secondary,
         with_checksum(body).as_bytes(),
     );
-    // It does nothing without a position.
+    // The boat does nothing without a position.
     let own = messages::picture::OwnBoat::new(
         primitives::VehicleId(0),
         messages::picture::Nav::default(),

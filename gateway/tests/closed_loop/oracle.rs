@@ -4,20 +4,20 @@
 use gateway::nmea::{FixQuality, Operator, Sentence};
 use primitives::SimTime;
 
-/// Maximum age of an order, of navigation and of a control report, s: those of the default file.
+/// Maximum age of orders, navigation and control reports, s: the values of the default file.
 const TTL_S: f64 = 1.0;
 const NAV_AGE_MAX_S: f64 = 1.5;
 const CONTROL_AGE_MAX_S: f64 = 2.0;
 
-/// The state as seen from outside the gateway.
+/// The gateway's state as seen from outside.
 #[derive(Debug, Default)]
 pub(crate) struct Oracle {
-    /// How much longer data may have waited, s.
+    /// How much longer than assumed data may have waited, s.
     pub(crate) waited_s: f64,
     /// When the last valid and newer order arrived.
     pub(crate) ordered: Option<SimTime>,
-    /// When the last valid fix, the last heading, and the boat's last report that we command it
-    /// arrived.
+    /// Arrival times of the last valid fix, of the last heading, and of the boat's last report that
+    /// we command it.
     pub(crate) fixed: Option<SimTime>,
     pub(crate) headed: Option<SimTime>,
     pub(crate) granted: Option<SimTime>,
@@ -25,8 +25,8 @@ pub(crate) struct Oracle {
     /// E-stops in force: boat, fleet.
     pub(crate) stops: [bool; 2],
     pub(crate) armed: bool,
-    /// How long after a stop for lack of orders the gateway may arm the boat itself, s, and when
-    /// the boat was last stopped for that reason.
+    /// Time after a stop for lack of orders in which the gateway may arm the boat itself (s), and
+    /// when the boat was last stopped for that reason.
     pub(crate) rearm_within_s: f64,
     pub(crate) starved: Option<SimTime>,
     pub(crate) link_up: bool,
@@ -38,7 +38,7 @@ pub(crate) struct Oracle {
     pub(crate) partial: String,
 }
 
-/// The time since a moment, s; infinite if the moment has not come.
+/// The time since a given moment, s; infinite if that moment has not come.
 pub(crate) fn age_s(now: SimTime, since: Option<SimTime>) -> f64 {
     since.map_or(f64::INFINITY, |since| (now - since).as_s())
 }

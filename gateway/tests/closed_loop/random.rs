@@ -50,7 +50,7 @@ fn lines() -> impl Strategy<Value = Vec<String>> {
     proptest::collection::vec(one, 1..60)
 }
 
-/// With all disturbances over, the boat can be armed.
+/// After all disturbances, the boat can be armed.
 const QUIET: &str = "open both\ntamper none\nother none\nfixes live\nvolts 25\ncontrol Secondary\nlink up\norder hold
 appear 60 40\noperator release\nfleet release\nrun 12\noperator arm\nexpect refused =\nexpect state = armed";
 

@@ -38,7 +38,7 @@ fn ten_thousand_orders_a_second_become_twenty_sentences() {
 fn a_new_order_does_not_wait_for_the_period_of_repetitions() {
     let mut rig = played("under-way\norder none");
     for i in 0..30 {
-        // Orders come ten times a second, at varying times between the repetitions.
+        // Orders arrive ten times a second, at varying times between the repetitions.
         rig.run(0.1 + 0.01 * f64::from(i % 3));
         let order = steer(f64::from(90 + i), 1.5);
         let given = rig.now + SimTime(1);

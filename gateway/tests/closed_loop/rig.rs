@@ -41,7 +41,7 @@ pub(crate) struct Rig {
     pub(crate) events: Vec<(SimTime, Event)>,
     pub(crate) navs: Vec<(SimTime, NavOut)>,
     pub(crate) sent: Vec<(SimTime, Vec<u8>)>,
-    /// The reason why the last command was refused, if it was.
+    /// Why the last command was refused, if it was.
     pub(crate) refused: Option<String>,
     /// The last log message of the emulated boat.
     pub(crate) remark: String,

@@ -256,7 +256,7 @@ fn order_of(words: &[&str]) -> Option<Order> {
     })
 }
 
-/// A mission with places `x,y` on the field or `@latitude,longitude`.
+/// A mission with waypoints `x,y` on the field or `@latitude,longitude`.
 fn mission_of(words: &[&str]) -> Mission {
     let frame = LocalFrame::new(datum());
     let place = |text: &str| {

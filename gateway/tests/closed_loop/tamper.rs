@@ -39,7 +39,7 @@ pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
     })
 }
 
-/// Replaces the first of each pair of words by the second.
+/// Replaces the first word of each pair with the second.
 fn replacing(pairs: &[&str]) -> impl Fn(&str) -> String + use<> {
     let pairs: Vec<[String; 2]> = pairs
         .chunks(2)
@@ -73,7 +73,7 @@ fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
     })
 }
 
-/// Changes the fields of the sentences with this name.
+/// Changes the fields of each sentence with this name.
 fn changed(name: &str, mut change: impl FnMut(&mut Vec<String>) + 'static) -> Tamper {
     let name = name.to_owned();
     rewritten(move |body| {
@@ -85,7 +85,7 @@ fn changed(name: &str, mut change: impl FnMut(&mut Vec<String>) + 'static) -> Ta
     })
 }
 
-/// Replaces fields of the sentences with this name, given by number.
+/// Replaces the numbered fields of each sentence with this name.
 fn replaced_fields(name: &str, pairs: &[&str]) -> Tamper {
     let said = |two: &[&str]| {
         (
@@ -101,7 +101,7 @@ fn replaced_fields(name: &str, pairs: &[&str]) -> Tamper {
     })
 }
 
-/// A receiver that repeats its first fix with its time, and still reports it as good.
+/// A receiver that repeats its first fix with the same time, still reported as good.
 fn first_fix_again() -> Tamper {
     let mut first = None;
     Box::new(move |bytes| {

@@ -24,7 +24,7 @@ fn bytes_go_both_ways_unchanged() {
     let (link, log) = listen("pty");
     log.up(0);
     let mut reader = attach(link.reach());
-    // Line endings and control characters have no special meaning here.
+    // Line endings and control characters are passed through unchanged.
     let all: Vec<u8> = (0..=255).collect();
     link.send(all.clone(), 1);
     assert_eq!(read(&mut reader, 256), all);
@@ -42,7 +42,7 @@ fn who_comes_late_gets_what_is_new() {
         let number = sent_at.len() as u64;
         sent_at.push(Instant::now());
         link.send(line(number), number);
-        // The data rate of a boat that sends a lot.
+        // The data rate of a talkative boat.
         pause(Duration::from_millis(5));
     }
     let mut reader = attach(link.reach());

@@ -100,7 +100,7 @@ fn begin_bulk(link: &Link, boat: &mut TcpStream) {
     boat.read_exact(&mut [0]).unwrap();
 }
 
-/// Reads until the last bytes equal `end`; returns false if there was a set-point among them.
+/// Reads until the last bytes equal `end`; returns false if they included a set-point.
 fn read_until(boat: &mut TcpStream, end: &[u8]) -> bool {
     let mut got = Vec::new();
     let mut buffer = vec![0; 65536];

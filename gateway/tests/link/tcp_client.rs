@@ -150,7 +150,7 @@ fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
         retrying(Duration::from_millis(20), Duration::from_secs(60)),
     );
     (0..5).for_each(|_| drop(accept(&listener)));
-    // The next wait would be 640 ms.
+    // The next wait would have been 640 ms.
     let mut boat = accept(&listener);
     let (_, start) = log.up(5);
     let send = || boat.write_all(b"here\n").unwrap();
@@ -162,7 +162,7 @@ fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
     assert!(wait < Duration::from_millis(300), "{wait:?}");
 }
 
-/// Sends until `end`; checks in the pauses that there is no second connection.
+/// Sends until `end`, and checks in the pauses that there is no second connection.
 fn chatter(end: Instant, listener: &TcpListener, mut talk: impl FnMut()) {
     SockRef::from(listener)
         .set_read_timeout(Some(Duration::from_millis(50)))
@@ -308,8 +308,8 @@ fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
-    // A boat takes a moment to notice. It must not be reset meanwhile, because a reset could
-    // discard data that it has not read yet.
+    // A boat takes a moment to notice. It must not be reset in the meantime, because a reset could
+    // discard data that it has not yet read.
     for _ in 0..10 {
         boat.write_all(b"$GPGGA")
             .expect("the link still listens for a moment");

@@ -1,4 +1,4 @@
-//! An ArduPilot boat and its gateway: who drives the boat when, and what stops it.
+//! An ArduPilot boat and its gateway: who drives the boat when, and which events stop it.
 
 use crate::rig::{Rig, datum, frame, plan};
 use gateway::bridge::{Event, Input};
@@ -144,7 +144,7 @@ fn at_speed_zero_a_boat_takes_its_heading_and_makes_no_way() {
     );
 }
 
-/// A velocity set-point with its yaw, in the form that was sent earlier.
+/// A velocity set-point with its yaw, in the form that earlier versions sent.
 fn with_yaw(message: MavMessage) -> Option<MavMessage> {
     let MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) = message else {
         return Some(message);
@@ -505,7 +505,7 @@ fn a_mission_that_the_boat_does_not_take_is_given_up_with_the_reason() {
 #[test]
 fn an_item_that_the_boat_got_twice_does_not_end_the_upload() {
     let mut rig = Rig::under_way();
-    // The boat does not receive the items until it has refused one.
+    // The boat receives no items until it has refused one.
     rig.alter = |message| (!matches!(message, MavMessage::MISSION_COUNT(_))).then_some(message);
     rig.operator(OperatorCommand::Mission(mission()));
     rig.run(1.5);
@@ -528,7 +528,7 @@ fn messages_of_other_systems_are_counted_and_ignored() {
     let mut writer = gateway::mavlink::Writer::new(7, 1);
     let mut framer = Framer::new();
     let mut telemetry = Vec::new();
-    // Another boat on the same network, in HOLD and with an empty battery.
+    // A different boat on the same network, in HOLD and with an empty battery.
     let mut another = ArduPilot::new(datum(), None);
     another.set_volts(5.0);
     another.observe(rig.now, &rig.boat.measured(rig.now, rig.boat.at));

@@ -11,8 +11,8 @@ use messages::Order;
 use messages::external::OperatorCommand;
 use primitives::frame::Ned;
 
-/// Time limit for two gateways to detect each other, s. Most of it is the time that the boat takes
-/// to move.
+/// Time limit for two gateways to detect each other, s. Most of it is the time the boat takes to
+/// move.
 const LIMIT_S: f64 = 15.0;
 
 fn steer(heading_deg: f64) -> Order {
@@ -86,8 +86,8 @@ fn two_gateways_at_one_boat_find_each_other_and_both_stop() {
     }
 }
 
-/// A ground station sends this message at this rate, 1/s, to a boat under way; returns the seconds
-/// until the gateway's failsafe, and its cause.
+/// A ground station sends this message at this rate (1/s) to a boat under way; returns the time
+/// until the gateway's failsafe (s) and its cause.
 fn steered_by_another(mut rig: Rig, message: &MavMessage, rate_hz: f64) -> (f64, String) {
     let bytes = frame(250, 190, message);
     let start = rig.now;

@@ -1,4 +1,4 @@
-//! The MAVLink framer: frames of another program, any split, damage, and frames that must be
+//! The MAVLink framer: frames from a different program, any split, damage, and frames that must be
 //! rejected.
 
 use gateway::mavlink::dialect::{

@@ -182,7 +182,7 @@ fn every_request_of_a_ground_station_gets_its_reply() {
     }
 }
 
-/// Command, its first parameters, and the result of it in HOLD, disarmed.
+/// A command with its first parameters, and its result in HOLD, disarmed.
 const RESULTS: [(u16, [f32; 2], u8); 18] = [
     (60_000, [0.0; 2], 3),
     // DO_START_MAG_CAL and DO_SEND_BANNER, of ArduPilot's own dialect.
@@ -400,7 +400,7 @@ fn a_new_system_number_takes_effect_after_the_reply_to_it() {
         "{:?}",
         station.systems
     );
-    // Orders to the old number are for another boat.
+    // Orders to the old number are for a different boat.
     assert_eq!(
         station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]),
         None

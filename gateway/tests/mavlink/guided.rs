@@ -19,8 +19,8 @@ use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::f64::consts::FRAC_PI_2;
 
-/// The part of a set-point that ground stations fill in: a position, a velocity, a heading, a rate
-/// of turn.
+/// The part of a set-point that ground stations fill in: a position, velocity, heading or rate of
+/// turn.
 const POSITION: u16 = 0b1101_1111_1000;
 const VELOCITY: u16 = 0b1101_1100_0111;
 const HEADING: u16 = 0b1001_1111_1111;
@@ -123,7 +123,7 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
         };
         messages.push(MavMessage::SET_POSITION_TARGET_GLOBAL_INT(target));
     }
-    // What MAVProxy's `guided` and dronekit's `simple_goto` send.
+    // Set-points sent by MAVProxy's `guided` and dronekit's `simple_goto`.
     let command = MavCmd::MAV_CMD_NAV_WAYPOINT;
     let current = 2;
     let frame = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT;

@@ -1,5 +1,5 @@
-//! Tests MAVLink: frames against those of another program, and an ArduPilot boat in a closed loop
-//! with its gateway, in memory.
+//! Tests MAVLink: frames from a different program, and an ArduPilot boat in a closed loop with its
+//! gateway, in memory.
 
 #[path = "../closed_loop/boat.rs"]
 #[allow(dead_code, reason = "what only a Surveyor needs")]

@@ -169,7 +169,7 @@ impl Rig {
         }
     }
 
-    /// Gives an input to the second gateway, which the boat hears too.
+    /// Passes an input to the second gateway, which the boat also receives.
     pub(crate) fn put_second(&mut self, input: &Input) {
         let Some(second) = &mut self.second else {
             return;

@@ -23,15 +23,15 @@ pub(crate) struct Station {
     pub(crate) order: Order,
     writer: Writer,
     framer: Framer,
-    /// The system that messages are for.
+    /// The system to which messages are addressed.
     pub(crate) target: u8,
-    /// The component that commands are for.
+    /// The component to which commands are addressed.
     pub(crate) component: u8,
     /// The systems that sent messages.
     pub(crate) systems: Vec<u8>,
     /// Acknowledgements of commands: number and result.
     acks: Vec<(u16, u8)>,
-    /// What came after the last command.
+    /// Messages received after the last command.
     pub(crate) heard: Vec<MavMessage>,
 }
 
@@ -68,13 +68,13 @@ impl Station {
         self.ardupilot.receive(self.now, &bytes);
     }
 
-    /// Sends a message; returns what arrives within the second in which a reply is due.
+    /// Sends a message; returns the messages that arrive within the second in which a reply is due.
     pub(crate) fn reply(&mut self, message: &MavMessage) -> Vec<MavMessage> {
         self.send(message);
         self.run(0.9)
     }
 
-    /// Runs for this time; returns what the boat sent.
+    /// Runs for this time; returns the messages that the boat sent.
     pub(crate) fn run(&mut self, seconds: f64) -> Vec<MavMessage> {
         let mut heard = vec![];
         for _ in 0..(seconds / STEP_S).round() as u64 {
@@ -171,7 +171,7 @@ impl Station {
         }
     }
 
-    /// Uploads waypoints; the result.
+    /// Uploads waypoints; returns the result.
     pub(crate) fn upload(&mut self, count: u16, mission_type: MavMissionType) -> MavMissionResult {
         let target_system = 1;
         let target_component = 1;
@@ -213,7 +213,7 @@ impl Station {
         }
     }
 
-    /// How many items the boat's mission has.
+    /// The number of items in the boat's mission.
     pub(crate) fn mission_count(&mut self) -> u16 {
         let list = MISSION_REQUEST_LIST_DATA {
             target_system: 1,

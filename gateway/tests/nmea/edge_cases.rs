@@ -1,4 +1,5 @@
-//! Edge cases: what real peers send beyond their manuals, and what no peer should send.
+//! Edge cases: content that real peers send beyond their manuals, and content that no peer should
+//! send.
 
 use gateway::nmea::{Command, ControlState, Hdg, Mode, Sentence, Talker};
 use primitives::LatLon;

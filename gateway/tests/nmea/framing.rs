@@ -178,11 +178,11 @@ fn lines_end_with_cr_or_lf_or_both() {
 #[test]
 fn each_fault_has_its_count() {
     let overlong = format!("${}{COMMAND}", "x".repeat(1000));
-    // What gpsd writes to identify us.
+    // The command that gpsd sends to identify the device.
     let probes =
         b"$PGRMCE*0E\r\n$PSRF100,0,4800,8,1,0*0F\r\n\xb5\x62\x06\x8e\x00\x00\xff\xb5\x62\x0a\x04\x00\x00\x0e\x34";
     let probes = [probes.as_slice(), COMMAND.as_bytes()].concat();
-    // Counts of sentences, wrong checksums, sentences too long, broken ones, and bytes of garbage.
+    // Counts of sentences, wrong checksums, overlong sentences, broken ones, and bytes of garbage.
     let cases: [(&[u8], [u64; 5]); 16] = [
         (b"$PSEAG,N*23\r\n", [0, 1, 0, 0, 0]),
         (b"$PSEAG,N\r\n", [0, 0, 0, 1, 0]),

@@ -1,5 +1,5 @@
-//! Sentences that fit are read back to their printed resolution; those that do not fit are never
-//! read as something else.
+//! Sentences that fit are read back to their printed resolution; sentences that do not fit are
+//! never read as something else.
 
 use crate::bodies;
 use crate::sentences::{Domain, boat_sentences, on_the_globe, sentences, values};

@@ -1,4 +1,4 @@
-//! Random sentences of every kind, for the tests here and for comparisons with other codecs.
+//! Random sentences of every kind, for these tests and for comparisons with other codecs.
 
 use gateway::nmea::{
     Attitude, Battery, BoatError, Command, ControlState, Date, Gga, Hdg, Hdt, MissionSettings,

@@ -31,7 +31,7 @@ pub(crate) fn written(toml: &str) -> Scenario {
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// One idle boat of this kind per side on open salt water, blue at its half point.
+/// One idle boat from this file per side on open salt water, blue's at its half point.
 pub(crate) fn alone(boat: &str, sea: &str) -> Scenario {
     written(
         &include_str!("alone.toml")
@@ -103,7 +103,7 @@ pub(crate) fn hamper(scenario: &mut Scenario) {
 
 /// Changes the state of a contest's world directly.
 pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
-    // Name and version, mark of the scenario, checksum; then the world comes first.
+    // Name, version, fingerprint of the scenario and checksum; the body begins with the world.
     let snapshot = contest.snapshot();
     let head = &snapshot[..13];
     let body = &snapshot[21..];
@@ -202,7 +202,7 @@ pub(crate) fn energy_joule(world: &World, hulls: &[HullModel]) -> f64 {
         .sum()
 }
 
-/// A boat's hull: the ends of its keel, and its radius (m) around it.
+/// A boat's hull: the ends of its keel, and the radius around it in m.
 pub(crate) fn capsule(world: &World, scenario: &Scenario, vehicle: usize) -> ((Ned, Ned), f64) {
     let kind = &scenario.boats[scenario.vehicles[vehicle].boat];
     let pose = world.state().boats[vehicle].pose;
@@ -264,7 +264,7 @@ pub(crate) fn surveyor_on(change: impl FnOnce(&mut Sea)) -> Scenario {
     scenario
 }
 
-/// A shipped kind of boat.
+/// One of the boat files shipped with Squall.
 pub(crate) fn boat(name: &str) -> Boat {
     scenario::load_file(&scenarios().join(format!("boats/{name}.toml")))
         .unwrap_or_else(|e| panic!("{e}"))
@@ -310,8 +310,8 @@ pub(crate) fn five_errors(count: usize, step: f64) -> f64 {
     5.0 * (2.0 / (count as f64 * step)).sqrt()
 }
 
-/// Asserts that a series with mean 0 and variance 1, `step` correlation times apart, has the
-/// correlation e^(−lag) within this tolerance.
+/// Asserts that a series of samples `step` correlation times apart, with mean 0 and variance 1, has
+/// the autocorrelation e^(−lag) within this tolerance.
 pub(crate) fn assert_memory(what: &str, x: &[f64], lags: &[usize], step: f64, within: f64) {
     assert!(mean_of(x.len(), |i| x[i]).abs() < within, "{what}: mean");
     for lag in lags {

@@ -1,6 +1,6 @@
 //! Broken scenario files: every mistake is reported at its place with the allowed values.
 //!
-//! The cases are data: `README.md` beside this file says how to read and add them.
+//! The cases are data: `README.md` in this folder explains how to read and add them.
 
 use crate::kinds::KINDS;
 use crate::written;
@@ -23,7 +23,7 @@ fn files_in(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Paths and texts of the valid files, some of which a case replaces.
+/// Paths and contents of the valid files, some of which a case replaces.
 fn sound() -> Vec<(String, String)> {
     let folders = [
         "boats",
@@ -49,7 +49,7 @@ fn sound() -> Vec<(String, String)> {
     files.map(file).collect()
 }
 
-/// The problems, line by line, of `asked` when `files` override the valid files.
+/// The problems, line by line, of `asked` if `files` override the valid files.
 fn problems(asked: &str, files: &[(String, String)]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     for (path, text) in sound().iter().chain(files) {
@@ -107,7 +107,7 @@ fn abridged(line: &str) -> String {
         })
 }
 
-/// Checks the cases in `text`, laid out as `README.md` says; returns their number and the failures.
+/// Checks the cases in `text`, laid out as in `README.md`; returns their number and the failures.
 fn check(text: &str) -> (usize, Vec<String>) {
     let mut cases = text.split("\n## ");
     let head = cases.next().unwrap_or_default();
@@ -230,7 +230,7 @@ fn the_sound_files_are_sound() {
     for (path, _) in sound {
         assert_eq!(problems(&path, &[]), [""; 0], "{path}");
     }
-    // A path in a base file is relative to the base, wherever the file that extends it is.
+    // A path in a base file is relative to the base, wherever the extending file is.
     let elsewhere = (
         "mine/of/today/x.toml".to_owned(),
         "base = \"../../../games/g.toml\"\nseed = 7\n".to_owned(),

@@ -1,5 +1,5 @@
-//! A scenario knows whether its seed matters: games with two seeds differ if, and only if, it says
-//! so.
+//! A scenario knows whether its seed matters: games with two seeds differ if, and only if, the
+//! scenario says so.
 
 use crate::files::{played, shipped};
 use primitives::reseed::Reseed;
@@ -100,7 +100,7 @@ fn a_snapshot_from_either_side_of_another_seed_goes_on_as_the_game_did() {
             snapshots.push(contest.snapshot());
             contest.advance();
         }
-        // Restores snapshots from the end backwards, without having played the parts between.
+        // Restores snapshots from the end backwards, without playing the parts between.
         for snapshot in snapshots.iter().rev().step_by(45) {
             let mut other = begin();
             other

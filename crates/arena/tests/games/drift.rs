@@ -1,21 +1,21 @@
-//! Boats in current and wind: the drift that their helms estimate, and where they end up in spite
-//! of it.
+//! Boats in current and wind: the drift estimated by their helms, and where the boats end up in
+//! spite of it.
 
 use crate::files::{loaded, watch};
 use primitives::{Ned, VehicleId};
 use scenario::{Scenario, StartPosition};
 use sim::Contest;
 
-/// Speed of the point boat of these tests, through the water, m/s.
+/// Speed of the point boat of these tests through the water, m/s.
 const SPEED_M_S: f64 = 2.0;
 
-/// A point boat that reaches speed and heading almost at once: [`SPEED_M_S`] at two thirds of its
+/// A point boat that reaches speed and heading almost instantly: [`SPEED_M_S`] at two thirds of its
 /// thrust.
 const QUICK_BOAT: &str = "base = \"SCENARIOS/boats/surveyor_kinematic.toml\"\n\
     [kinematic]\nthrust_map = [[-100, -3.0], [0, 0], [100, 3.0]]\nspeed_factor = 33.333333333333336\nturn_rate = 20\n\
     turn_loss = 0\nheading_pid = { p = 4, d = 0 }\nacceleration_max_m_s2 = 0\ndeceleration_max_m_s2 = 0\n";
 
-/// Blue has one boat in open water at (300, 200) m; red one is far away.
+/// Blue has one boat in open water at (300, 200) m; red's is far away.
 fn scenario(boat: &str, sea: &str, strategy: &str, heading_deg: f64) -> Scenario {
     let game = format!(
         "base = \"SCENARIOS/games/attack_1v1.toml\"\nfield = \"SCENARIOS/fields/open_800x400.toml\"\n\
@@ -44,9 +44,8 @@ fn blue_at(contest: &Contest) -> Ned {
     contest.world().state().boats[0].pose.at
 }
 
-/// A boat's path to a point 200 m east across a current of half a metre per second towards the
-/// north. Returns its distances from the straight line by the remaining distance along it, m, and
-/// the duration, s.
+/// A boat's path to a point 200 m east across a current of 0.5 m/s towards the north. Returns its
+/// distances from the straight line by the remaining distance along it (m), and the duration (s).
 fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
     let strategy = format!(
         "base = \"SCENARIOS/strategies/safety.toml\"\nabout = \"crosses\"\nhelm = {{ hysteresis = 0, compensate_drift = {compensate_drift} }}\n\

@@ -1,5 +1,5 @@
 //! Boats on crossing paths: they keep clear of each other, and do not both turn into each other's
-//! way.
+//! path.
 
 use crate::files::{loaded, watch};
 use analysis::HullRectangle;
@@ -7,12 +7,12 @@ use primitives::stream::Stream;
 use primitives::{Ned, VehicleId};
 use scenario::Scenario;
 
-/// Where their paths cross, along and across the field, m.
+/// Where their paths cross: along and across the field, m.
 const MIDDLE_M: (f64, f64) = (400.0, 200.0);
-/// Their initial distance from there, m.
+/// Their initial distance from that point, m.
 const START_M: f64 = 45.0;
 
-/// Two mates in calm water, each heading through the middle to the other side.
+/// Two teammates in calm water, each heading through the middle to the other side.
 fn encounter(stream: &mut Stream) -> Scenario {
     let mut game = "base = \"SCENARIOS/games/attack_1v1.toml\"\nfield = \"SCENARIOS/fields/open_800x400.toml\"\n\
          boat = \"SCENARIOS/boats/surveyor_m1_8.toml\"\nsea = \"SCENARIOS/seas/calm.toml\"\nduration_s = 60\n\
@@ -57,7 +57,7 @@ fn encounter(stream: &mut Stream) -> Scenario {
     loaded(&files)
 }
 
-/// The closest distance between the two, m, and whether their hulls touch.
+/// The closest distance between the two (m), and whether their hulls touch.
 fn nearest(scenario: &Scenario) -> (f64, bool) {
     let boats: Vec<VehicleId> = (0..scenario.vehicles.len())
         .map(VehicleId::at)

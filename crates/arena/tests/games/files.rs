@@ -12,8 +12,8 @@ pub(crate) fn shipped(path: &str) -> PathBuf {
         .join(path)
 }
 
-/// The scenario of `game.toml` among these files. `SCENARIOS` in them is the folder of the shipped
-/// ones.
+/// The scenario of `game.toml` among these files, in which `SCENARIOS` stands for the folder of the
+/// shipped ones.
 pub(crate) fn loaded(files: &[(&str, impl AsRef<str>)]) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     for (name, text) in files {
@@ -25,7 +25,7 @@ pub(crate) fn loaded(files: &[(&str, impl AsRef<str>)]) -> Scenario {
     scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The outcome of the game of its seed.
+/// The outcome of the game with its own seed.
 pub(crate) fn played(scenario: &Scenario) -> Outcome {
     arena::play(scenario, agent::minds_of(scenario), scenario.seed)
         .unwrap_or_else(|e| panic!("{e}"))

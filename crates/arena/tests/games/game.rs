@@ -63,7 +63,7 @@ fn the_first_game_of_the_paper_is_played_to_its_end() {
             all(&outcome, |counts| counts.captures),
             all(&outcome, |counts| counts.tags),
         ];
-        // Attackers reach the flag, some bring it home, and defenders catch some of them.
+        // Attackers reach the flag, some bring it home, and defenders catch others.
         assert!(
             grabs > 0 && captures > 0 && tags > 0,
             "seed {seed}: {grabs} grabs, {captures} captures, {tags} tags"
@@ -85,7 +85,7 @@ fn the_same_seed_is_the_same_game() {
         let again = play(&shipped(game), 5);
         assert_eq!(first, again, "{game}");
     }
-    // Forty boats that avoid each other take long to simulate: two minutes of game time suffice.
+    // Forty boats that avoid each other take long to simulate, so two minutes of game time must do.
     let mut swarm = shipped("swarm_20v20.toml");
     swarm.rules.time_limit = SimTime::from_s(120.0);
     let [first, again, other] = [5, 5, 6].map(|seed| play(&swarm, seed));
@@ -238,7 +238,7 @@ fn a_fleet_plays_the_same_game_on_any_number_of_threads_and_when_boats_work_alon
     }
 }
 
-/// A mind that works out itself what its whole team knows.
+/// A mind that derives its whole team's knowledge by itself.
 struct Alone(Box<dyn Mind>);
 
 impl Mind for Alone {

@@ -104,7 +104,7 @@ fn each_of_the_four_kinds_of_opponent_is_known_and_gets_its_own_response() {
                 .all(|mode| modes.iter().any(|was| was == mode))
         };
         let silent: Vec<_> = right.iter().filter(|(_, modes)| !responds(modes)).collect();
-        // An opponent need not give it the opportunity in every game.
+        // An opponent need not provide the opportunity in every game.
         assert!(silent.len() <= 1, "{red}: {silent:?}");
     }
 }
@@ -139,7 +139,7 @@ fn strategy_5_beats_strategy_4_from_either_side() {
             lost += u64::from(points(&outcome, own) < points(&outcome, other));
         }
     }
-    // Over hundreds of games it wins about three in four of those decided.
+    // Over hundreds of games it wins about three quarters of those decided.
     assert!(won > lost && 2 * won > SEEDS, "{won} won, {lost} lost");
 }
 
@@ -157,7 +157,7 @@ fn twenty_boats_a_side_grab_and_capture() {
 
 #[test]
 fn a_tagged_boat_does_not_lie_at_an_edge() {
-    // A boat once took 258 s to get home in this game. For most of that time it lay 10 m from an
+    // In this game, a boat once took 258 s to get home. For most of that time it lay 10 m from an
     // edge with no boat near, because the helm's steadiness bonus outweighed the way home.
     const HOME_S: f64 = 150.0;
     let game =

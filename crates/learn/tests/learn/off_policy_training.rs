@@ -130,7 +130,7 @@ fn a_policy_of_td3_plays_from_its_file_as_it_was_trained() {
                 got.iter().all(|number| (-1.0..=1.0).contains(number)),
                 "{got:?}"
             );
-            // The sums of a layer have another order.
+            // The sums in a layer are in a different order.
             assert!(
                 got.iter()
                     .zip(want)

@@ -57,7 +57,7 @@ impl Mind for Replayed {
     }
 }
 
-/// The greatest distance between a boat here and in the recording, m.
+/// The greatest distance between a boat in this game and in the recording, m.
 fn greatest_gap_m(scenario: &Scenario, recorded: &Recorded) -> f64 {
     let mind = |i: usize| -> Box<dyn Mind> {
         let actions: Vec<usize> = recorded.actions.iter().map(|row| row[i]).collect();
@@ -96,7 +96,7 @@ fn boats_move_as_in_pyquaticus() {
     let mut competition = game("mctf_2026");
     // Off in the recording as well.
     competition.rules.power_play = SimTime::ZERO;
-    // There, both teams start from the north.
+    // In the recording, both teams start from the north.
     let red_1 = competition.vehicles[3].start_position.clone();
     competition.vehicles[3].start_position = competition.vehicles[5].start_position.clone();
     competition.vehicles[5].start_position = red_1;

@@ -167,7 +167,7 @@ fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
     assert_eq!(told, *ended.lock().expect("no thread has panicked"));
 }
 
-/// Imitates strategy 2 with the options of another strategy.
+/// Imitates strategy 2 with the options of a different strategy.
 fn imitation(options: &[(&str, &str)]) -> Training {
     let options = options
         .iter()

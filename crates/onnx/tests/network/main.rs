@@ -10,7 +10,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Absolute and relative tolerance against ONNX Runtime, which rounds its sums in another order.
+/// Absolute and relative tolerance against ONNX Runtime, whose sums are in a different order.
 const ERROR_MAX: f32 = 1e-5;
 
 const MODELS: [&str; 9] = [

@@ -1,4 +1,4 @@
-//! The referee's public behaviour: scenes with a few boats, and long random walks.
+//! The public behaviour of the referee: scenes with a few boats, and long random walks.
 
 mod mirror;
 mod out_of_play;

@@ -4,7 +4,7 @@ use primitives::{FlagId, Leg, Ned, TeamId, VehicleId};
 use rules::event::{Event, TagCause};
 use rules::{Standing, VehicleStanding};
 
-/// Half a turn about the middle of the field. The teams, which have the same number of boats, are
+/// A half-turn about the middle of the field. The teams, which have the same number of boats, are
 /// swapped.
 pub(crate) struct Mirror {
     pub(crate) boats: usize,

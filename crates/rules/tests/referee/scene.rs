@@ -116,7 +116,7 @@ impl Scene {
         self
     }
 
-    /// Moves a boat there from where it is.
+    /// Moves a boat to a position from where it is.
     pub(crate) fn go(&mut self, vehicle: usize, x: f64, y: f64) -> &mut Scene {
         self.fleet[vehicle].to = Ned::from_xy(x, y);
         self
@@ -158,7 +158,7 @@ impl Scene {
     }
 }
 
-/// A boat at rest at this place.
+/// A boat at rest at this position.
 fn still(x: f64, y: f64) -> Leg {
     let at = Ned::from_xy(x, y);
     Leg { from: at, to: at }

@@ -1,4 +1,4 @@
-//! Scenes as text: this test runs the files in `scenes`.
+//! Scenes as text files: this test runs those in `scenes`.
 //!
 //! - `## NAME` begins a scene, `# …` is a comment.
 //! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, its overrides (JSON values, times

@@ -11,7 +11,7 @@ use tungstenite::{Error, Message, WebSocket};
 
 /// Limit of every wait.
 const LIMIT: Duration = Duration::from_secs(30);
-/// How long silence must last to count as such.
+/// Duration of silence that counts as such.
 const QUIET: Duration = Duration::from_secs(1);
 
 pub(crate) struct Client {
@@ -86,7 +86,7 @@ impl Client {
             .expect("a message arrives in time")
     }
 
-    /// The next message, which must be text.
+    /// The next message, which must be a text message.
     pub(crate) fn text(&mut self) -> Value {
         match self.next() {
             Message::Text(text) => serde_json::from_str(&text).expect("texts are JSON"),
@@ -94,8 +94,8 @@ impl Client {
         }
     }
 
-    /// The next text of this kind that passes `is_good`. Skips everything else and acknowledges
-    /// frames.
+    /// The next text message of this kind that satisfies `is_good`. Skips all others and
+    /// acknowledges frames.
     pub(crate) fn until(&mut self, kind: &str, is_good: impl Fn(&Value) -> bool) -> Value {
         let end = now() + LIMIT;
         let mut last = Value::Null;
@@ -127,7 +127,7 @@ impl Client {
         refused
     }
 
-    /// The next frame with its leading byte. Skips texts.
+    /// The next frame with its leading byte. Skips text messages.
     pub(crate) fn frame(&mut self) -> Vec<u8> {
         loop {
             if let Message::Binary(bytes) = self.next() {

@@ -261,7 +261,7 @@ fn events_come_with_frames_and_missed_ones_are_asked_for() {
         .visit(|events| *events = vec![outcome(2), outcome(4)]);
     sim.show(1, &[tagged(2)]);
     client.until("events", |events| events["events"][0]["tick"] == 2);
-    // The frame in between is lost, along with its event.
+    // The frame between them is lost, along with its event.
     sim.show(3, &[]);
     let news = client.until("events", |events| {
         events["events"]

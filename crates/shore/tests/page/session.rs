@@ -72,7 +72,7 @@ fn a_page_that_draws_nothing_gets_two_frames() {
 fn a_page_that_does_not_read_can_still_send() {
     let (asked, asks) = channel();
     let (_page, mut client) = visit(Arc::new(Talker(asked, Changes::default())));
-    // The connection's buffers fill up once the page has read nothing for a while.
+    // The connection's buffers fill up after the page has read nothing for a while.
     assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
     for ask in [
         r#"{"do":"control","what":"halt"}"#,
@@ -82,7 +82,7 @@ fn a_page_that_does_not_read_can_still_send() {
         let want: PageRequest = serde_json::from_str(ask).expect("a valid request");
         assert_eq!(asks.recv_timeout(Duration::from_secs(10)), Ok(want));
     }
-    // The message sent partly meanwhile arrives complete.
+    // The message that was partly sent in the meantime arrives complete.
     (0..40).for_each(|_| assert_eq!(client.next(), Message::text("x".repeat(1 << 20))));
 }
 

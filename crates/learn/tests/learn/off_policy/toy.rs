@@ -37,7 +37,7 @@ fn steps_on_a_line(count: usize) -> Replay<td3::Numbers> {
             } else {
                 0.0
             };
-        // Steps that ignore the action start farther out, since being tagged is another state.
+        // Steps that ignore the action start farther out, since being tagged is a different state.
         let mark = if counts { 0.0 } else { 3.0 };
         replay.push(Transition {
             observation: &[place + mark],
