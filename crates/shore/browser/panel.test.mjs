@@ -165,6 +165,9 @@ test('with twenty boats per side, names cover no boat, tagged boats fade, and ci
   await sight.page.hover(`[data-vehicle=${tagged}]`);
   await sight.until('pointed at, it is drawn like others', (name) => squall.labels.some((label) => label.name === name), tagged);
   assert((await sight.get(INK, tagged)) > 0.9 * plain);
+  await sight.press(`[data-vehicle=${tagged}]`);
+  await sight.until('its mode is known', () => squall.helm?.report?.mode === 'tagged');
+  await sight.until('its details say so once', () => document.querySelector('.boat-head').textContent.includes('tagged') && /^\d/.test(document.getElementById('boat-summary').textContent));
 });
 
 test('names are written consistently', async (t) => {
