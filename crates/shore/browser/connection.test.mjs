@@ -116,6 +116,12 @@ test('a page without a game says why and what to type, and shows the result of a
   const sight = await Sight.load(t, browser, await view.url(), { allows: NOBODY });
   await sight.until('the page says so', () => /No game to show: .*no response.*squall run surveyor_2v2/s.test(document.getElementById('over').textContent));
   assert.equal(await sight.text('#phase'), 'no game');
+  for (const [width, height] of [[1400, 900], [390, 844], [844, 390]]) {
+    await sight.page.setViewportSize({ width, height });
+    const [sheet, over] = await Promise.all(['#sheet', '#over'].map((each) => sight.page.locator(each).boundingBox()));
+    assert(over.y >= sheet.y && over.y + over.height <= sheet.y + sheet.height, `the text is cut off at ${width}×${height}`);
+    assert(!(await sight.page.isVisible('text=No boat matches')) && !(await sight.page.isVisible('#pause')), 'controls of no game');
+  }
   const file = gameFile(t, 'brief', 'pav01_vs_pav01.toml', 'duration_s = 3');
   const record = join(folder(t), 'brief.mcap');
   new Program(t, 'sim', file, '--pace', 'realtime', '--game', name, '--listen', endpoint, '--join-s', '0', '--record', record);

@@ -48,6 +48,12 @@ test('a geofence is drawn by hand and by keys, and copied in the form of the gat
   assert.match(await text(sight), /^\[geofence\]\npolygon = \[\n( {2}\[[^\]]+\],\n){4}\]\nkeep_out = \[\n {2}\[\n( {4}\[[^\]]+\],\n){3} {2}\],\n\]\n$/);
   await sight.press('#fence-copy');
   assert.equal(await sight.get(() => navigator.clipboard.readText()), await text(sight));
+  const cut = await sight.get(() => {
+    const box = document.getElementById('fence-editor');
+    const { right } = box.getBoundingClientRect();
+    return [...box.querySelectorAll('button, select, textarea')].filter((each) => each.getBoundingClientRect().right > right - 8).map(({ id }) => id);
+  });
+  assert.deepEqual(cut, [], 'beyond the edge of the box');
   // Two sides that cross are not a polygon.
   await sight.page.selectOption('#fence-part', { label: 'Outline' });
   await sight.press('#fence-undo');

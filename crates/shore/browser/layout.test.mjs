@@ -147,3 +147,13 @@ test('the rose has scales and can be folded', async (t) => {
   await sight.until('the helm is known', () => squall.helm?.report);
   assert(!(await sight.page.isVisible('#rose')), 'it stays folded');
 });
+
+test('the help shows all keys and marks at once', async (t) => {
+  const sight = await Sight.open(t, browser, await live(t, '--speed', '2x'), { size: DESK });
+  await sight.keys('?');
+  const { scrolled, seen } = await sight.get(() => {
+    const box = document.getElementById('help-box');
+    return { scrolled: box.scrollHeight - box.clientHeight, seen: box.querySelectorAll('dt').length };
+  });
+  assert(seen > 30 && scrolled <= 0, `${scrolled} pixels of ${seen} rows are hidden`);
+});

@@ -165,6 +165,9 @@ test('with twenty boats per side, names cover no boat, tagged boats fade, and ci
   await sight.page.hover(`[data-vehicle=${tagged}]`);
   await sight.until('pointed at, it is drawn like others', (name) => squall.labels.some((label) => label.name === name), tagged);
   assert((await sight.get(INK, tagged)) > 0.9 * plain);
+  await sight.press(`[data-vehicle=${tagged}]`);
+  await sight.until('its mode is known', () => squall.helm?.report?.mode === 'tagged');
+  await sight.until('its details say so once', () => document.querySelector('.boat-head').textContent.includes('tagged') && /^\d/.test(document.getElementById('boat-summary').textContent));
 });
 
 test('names are written consistently', async (t) => {
@@ -178,12 +181,22 @@ test('names are written consistently', async (t) => {
   assert.equal(await sight.get(() => document.querySelector('#pane-boat h2').innerText), 'red two');
 });
 
+/** The rows of the first team's colour at a pixel from the left of the time line, below the marks. */
+const ROWS = (x) => {
+  const canvas = document.getElementById('timeline');
+  const ratio = canvas.width / canvas.clientWidth;
+  const colour = getComputedStyle(document.documentElement).getPropertyValue('--team-0').trim().match(/\w\w/g).map((part) => parseInt(part, 16));
+  const { data } = canvas.getContext('2d').getImageData(Math.round(x < 0 ? canvas.width + x * ratio : x * ratio), 0, 1, canvas.height);
+  return [...Array(canvas.height).keys()].filter((y) => y > 29 * ratio && y < canvas.height - 28 * ratio
+    && colour.every((part, i) => Math.abs(part - data[4 * y + i]) < 24)).map((y) => y / ratio);
+};
+
 test('a phone on its side shows the chart and the panel next to each other, and everything fits', async (t) => {
   const url = await replay(t, 'pav01_vs_pav01');
   const live = await new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0').url();
   for (const [width, height] of [[844, 390], [932, 430], [667, 375]]) {
     for (const [at, least] of [[url, 150], [live, 220]]) {
-      const sight = await Sight.open(t, browser, at, { size: { width, height }, hasTouch: true, isMobile: true });
+      const sight = await Sight.open(t, browser, at, { size: { width, height }, hasTouch: true, isMobile: true, allows: /willReadFrequently/ });
       const boxes = await sight.get(() => Object.fromEntries(['sheet', 'side', 'controls', 'pause', 'tab-events', 'estop', 'timeline', 'event-next'].map((id) => {
         const box = document.getElementById(id).getBoundingClientRect();
         return [id, { left: box.left, top: box.top, right: box.right, bottom: box.bottom, shown: box.width > 0 }];
@@ -193,6 +206,17 @@ test('a phone on its side shows the chart and the panel next to each other, and 
       assert(boxes.sheet.bottom - boxes.sheet.top >= least, where);
       for (const box of Object.values(boxes).filter(({ shown }) => shown)) assert(box.left >= 0 && box.top >= 0 && box.right <= width + 0.5 && box.bottom <= height + 0.5, where);
       assert.deepEqual([boxes.estop.shown, boxes.timeline.shown], [at === live, at === url], where);
+      if (at === url) {
+        const [first, last] = await sight.until('the score is drawn', `(() => { const rows = ${ROWS}; const found = [rows(37), rows(-18)]; return found.every((each) => each.length > 0) && found; })()`);
+        assert(last[0] < first[0] - 8, `the score rises from ${first} to ${last} at ${width} by ${height}`);
+        await sight.page.tap('#show-plots');
+        const { plots, axis } = await sight.until('a plot is drawn', () => {
+          const [plots, axis] = ['#plots', '.plot-place'].map((each) => document.querySelector(each)?.getBoundingClientRect().toJSON());
+          return axis?.height > 0 && { plots, axis };
+        });
+        assert(axis.height >= 100 && axis.bottom <= plots.bottom && plots.bottom >= height - 60, `${width} by ${height}: ${JSON.stringify({ plots, axis })}`);
+        await sight.page.tap('#show-plots');
+      }
       await sight.page.tap('#tab-events');
       assert(await sight.page.isVisible('#pane-events'));
       await sight.close();

@@ -187,7 +187,7 @@ test('a finished game becomes its replay', async (t) => {
   assert(await sight.page.isVisible('#timeline'));
   assert(!(await sight.page.isVisible('#estop')), 'a recording cannot be stopped');
   assert(Math.abs((await sight.get(() => squall.player.to_s)) - 200) < 1e-6);
-  await scrub(sight, 200);
+  await sight.until('its end is shown', () => squall.t_s >= 200 - 1e-6);
   const score = await sight.get(() => squall.score);
   const won = score[0] === score[1] ? 'A draw.' : score[0] > score[1] ? 'Blue wins.' : 'Red wins.';
   await sight.until('the result is shown', (text) => document.getElementById('over').textContent === text,

@@ -219,7 +219,9 @@ test('an unfinished sweep says so, and shows its results so far', async (t) => {
   const level = (each, i) => (i === 0 ? each : { ...each, metrics: none(each.metrics) });
   const effects = report.effects.map((effect) => ({ ...effect, contrasts: none(effect.contrasts), levels: effect.levels.map(level) }));
   const unfinished = { ...report, games_done: report.games / 2, points: report.points.map(point), interactions: [], effects };
-  const page = await open(t, played, { report: unfinished });
+  const page = await open(t, played, { report: unfinished, size: { width: 390, height: 844 } });
+  const [name, dark] = await Promise.all(['#name', '#dark'].map((each) => page.locator(each).boundingBox()));
+  assert(name.height < 40 && dark.x + dark.width <= 390, `the title on a phone: ${JSON.stringify({ name, dark })}`);
   assert.match(await page.textContent('#state'), new RegExp(`not finished: ${report.games / 2} of ${report.games} games`));
   assert.equal(await page.locator('#heat-charts .card >> nth=0 >> td.none').count(), report.points.length - 3);
   assert.equal(await page.locator('#tornado-charts .effect').count(), 0);

@@ -126,7 +126,7 @@ export class Details {
     const error = game.estimateError();
     const flag = game.chart.field.flags?.[game.carrying[index]];
     const carries = flag ? `carries the ${plain(game.chart.teams[flag.team]?.name ?? '')} flag` : '';
-    const mode = report?.mode ? plain(report.mode).replaceAll(':', ' › ') : '';
+    const mode = report?.mode && !matter.includes(report.mode) ? plain(report.mode).replaceAll(':', ' › ') : '';
     const motion = [number(game.speed[index], 1, 'm/s'), bearing((game.course[index] * 180) / Math.PI)];
     write(this.summary, [mode, carries, ...motion].filter(Boolean).join(' · '));
     const facts = [

@@ -76,6 +76,8 @@ const DETAILS_MS = 40;
 const LIST_EVERY = 3;
 /** A page without a game reports that after this time, ms. */
 const MISSING_MS = 1500;
+/** The longest game, s. */
+const GAME_MAX_S = 86_400;
 /** Maximum distance of the pointer from a boat, px. */
 const REACH_MOUSE_PX = 8;
 const REACH_TOUCH_PX = 22;
@@ -251,7 +253,7 @@ class Page {
     show(byId('over'), false);
     document.body.classList.remove('unplayed');
     write(byId('about'), hello.about ?? '');
-    const before = game.selected;
+    const [before, wasLive] = [game.selected, game.mode === 'live'];
     const sameField = game.chart.field && JSON.stringify(game.chart.field) === JSON.stringify(hello.chart.field);
     this.drive.letGo();
     try {
@@ -282,13 +284,16 @@ class Page {
     this.askedModes = false;
     if (game.indexOf.has(before)) this.select(before);
     else this.setFollowing(false);
-    this.begin(game.greeted === 1);
+    this.begin(game.greeted === 1, wasLive);
     this.tell();
   }
 
   /** A replay starts at the address's moment, or else plays. A replay shown after its own game stays paused, with the final score. */
-  begin(first) {
-    if (first && !this.goToAddress() && this.game.mode === 'replay') this.link.send({ do: 'control', what: 'resume' });
+  begin(first, wasLive) {
+    const isMoved = first && this.goToAddress();
+    if (this.game.mode !== 'replay' || isMoved) return;
+    if (first) this.link.send({ do: 'control', what: 'resume' });
+    else if (wasLive) this.link.send({ do: 'seek', t_s: GAME_MAX_S });
   }
 
   /** Goes to the address's moment and boat. Returns whether it has a moment. */

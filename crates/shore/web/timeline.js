@@ -21,10 +21,11 @@ const LEFT = 34;
 const RIGHT = 14;
 /** Rows of marks, one for each kind, above the score, px. */
 const LANE_TOP = 8;
-/** The height of a row on a timeline of usual height, and on a low one. */
+/** The largest and the least height of a row. */
 const LANE = 9;
-const LANE_LOW = 7;
-const LOW_PX = 100;
+const LANE_LOW = 4;
+/** Height of a timeline without its rows, px: the score, its space and the times. */
+const BESIDE_LANES = 60;
 /** Events this close to the pointer are listed, px. */
 const NEAR_PX = 6;
 const TOLD_MAX = 4;
@@ -366,7 +367,7 @@ export class Timeline {
     const context = this.still.getContext('2d');
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     const base = height - 20;
-    this.lane = height < LOW_PX ? LANE_LOW : LANE;
+    this.lane = Math.min(LANE, Math.max(LANE_LOW, (height - BESIDE_LANES) / KINDS.length));
     this.drawScale(context, width, base);
     context.save();
     context.beginPath();
