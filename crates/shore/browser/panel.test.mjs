@@ -181,7 +181,7 @@ test('names are written consistently', async (t) => {
   assert.equal(await sight.get(() => document.querySelector('#pane-boat h2').innerText), 'red two');
 });
 
-/** The rows of the first team's colour at a pixel from the left of the time line, below the marks. */
+/** The rows of the first team's colour at a pixel from the left of the timeline, below the marks. */
 const ROWS = (x) => {
   const canvas = document.getElementById('timeline');
   const ratio = canvas.width / canvas.clientWidth;
