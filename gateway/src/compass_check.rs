@@ -20,7 +20,7 @@ const PIECE_S: f64 = 1.5;
 const STRAIGHT_RAD: f64 = 0.3;
 /// Minimum ordered speed of a run, m/s.
 const SPEED_FROM_M_S: f64 = 0.7;
-/// A boat reaches its speed with about this lag, s.
+/// Approximate lag with which a boat reaches its speed, s.
 const SPEED_LAG_S: f64 = 2.0;
 /// Maximum gap between orders and velocities of the same run, s.
 const GAP_MAX_S: f64 = 1.5;

@@ -54,7 +54,7 @@ pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
 pub struct StepEncoder {
     link_topic: String,
     vehicle: VehicleId,
-    /// Number of pieces of bytes so far.
+    /// Number of chunks of bytes so far.
     pieces: u64,
 }
 

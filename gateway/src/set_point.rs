@@ -1,8 +1,8 @@
 //! The set-point mapper: converts orders to set-points for the boat.
 //!
 //! With `drive = "thrust"` the heading and speed loops run in the gateway; with `drive = "speed"`
-//! they run on the boat. Thrust is in per cent, its difference positive to starboard: port = thrust
-//! + difference, starboard = thrust − difference.
+//! they run on the boat. Thrust is in per cent, its difference positive to starboard:
+//! port = thrust + difference, starboard = thrust − difference.
 
 use crate::config::{Drive, Gateway, Limits, Loops};
 use crate::thrust_check::Ordered;

@@ -18,7 +18,7 @@ pub(crate) const BEGINS: Duration = Duration::from_millis(500);
 const ACTS: Duration = Duration::from_millis(50);
 /// Messages per flood.
 const FLOOD: usize = 40;
-/// Delay of a replayed proof: longer than its validity and than the delay of any network here.
+/// Delay of a replayed proof: longer than its validity and than any delay in these networks.
 const LATE: Duration = Duration::from_secs(3);
 /// Maximum number of proofs and queries kept.
 const KEPT_MAX: usize = 16;

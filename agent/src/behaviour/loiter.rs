@@ -115,7 +115,7 @@ impl BehaviourLogic for LoiterBehaviour {
     }
 }
 
-/// The corners of a shape, clockwise; none if a place in it is unknown.
+/// The corners of a shape, clockwise; `None` if a place in it is unknown.
 pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec<Ned>) {
     corners.clear();
     match shape {

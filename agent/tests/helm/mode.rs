@@ -284,7 +284,7 @@ fn a_steady_helm_follows_what_moves_and_turns_round_for_what_is_better() {
         "helm = {{ hysteresis = 0.1 }}\n{go}"
     )));
     assert!((steered(&mut mind, &alone(0.0, Boat::at(0.0, 0.0))).0 - 90.0).abs() < 0.51);
-    // From here the point bears 100 degrees, and from behind it 270.
+    // From this position the point bears 100 degrees, and from behind it 270.
     let report = decided(&mut mind, &alone(0.1, Boat::at(0.0, 60.0 * 0.176_326_98)));
     assert!(
         (report.course_deg.expect("a course") - 100.0).abs() < 0.51,

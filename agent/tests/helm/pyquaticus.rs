@@ -32,7 +32,7 @@ struct State {
     boats: Vec<Boat>,
 }
 
-/// x is east and y north, m.
+/// x (east) and y (north), m.
 #[derive(Deserialize)]
 struct Boat {
     x: f64,

@@ -60,10 +60,10 @@ pub fn restart_with_threads_for_keys() -> Result<()> {
     Ok(())
 }
 
-/// Size limit of a token file, bytes: it is one line of text, so a longer file is not a token file.
+/// Size limit of a token file (bytes), which is a single line: a longer file is not a token file.
 const TOKEN_FILE_MAX: u64 = 4096;
 
-/// Reads a secret from the file, or else from the environment variable; returns it with its place,
+/// Reads a secret from the file, or else from the environment variable; returns it with its source,
 /// for errors.
 pub fn text_of(file: Option<&Path>, variable: &str) -> Result<Option<(String, String)>> {
     let Some(file) = file else {
@@ -109,12 +109,12 @@ impl LeafArgs {
         bus::local_gateways().into_iter().filter(is_meant).collect()
     }
 
-    /// Whether these are the endpoints given on the command line.
+    /// Whether the arguments give these endpoints.
     pub fn connects_to(&self, net: &Net) -> bool {
         !self.connect.is_empty() && net.connect == self.connect
     }
 
-    /// Whether they do not select a game and none is running on this machine.
+    /// Whether the arguments select no game and none is running on this machine.
     pub fn finds_no_game(&self) -> bool {
         let names_place = self.game.is_some()
             || self.lan

@@ -27,7 +27,7 @@ pub struct Kind(pub u8);
 impl Kind {
     /// A new value of a variable.
     pub const NOTIFY: Kind = Kind(b'N');
-    /// A subscription; the number is the minimum interval, s.
+    /// A subscription; the number is the minimum interval in s.
     pub const REGISTER: Kind = Kind(b'R');
     /// The end of a subscription.
     pub const UNREGISTER: Kind = Kind(b'U');

@@ -115,7 +115,7 @@ pub enum Event {
 }
 
 impl Event {
-    /// The affected boat: the first in a collision; none at the end of a game.
+    /// The affected boat: the first in a collision; `None` at the end of a game.
     pub fn vehicle(self) -> Option<VehicleId> {
         match self {
             Event::Grabbed { vehicle, .. }

@@ -56,7 +56,7 @@ pub struct Rules {
     /// Maximum distance from the capture place, m; no effect with "own_side".
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub capture_radius_m: f64,
-    /// Boats whose centres are closer than this collide, m.
+    /// Distance of centres below which boats collide, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
     /// Contact between boats; walls and obstacles are always solid.

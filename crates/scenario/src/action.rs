@@ -234,7 +234,7 @@ const TURNS: usize = 8;
 const SPEEDS: [f64; 2] = [1.0, 0.5];
 
 impl ActionSpace {
-    /// Number of discrete actions; none for continuous actions, and for options, since their number
+    /// Number of discrete actions; `None` for continuous actions, and for options, whose number
     /// depends on a strategy.
     pub fn count(self) -> Option<usize> {
         match self {
@@ -256,7 +256,7 @@ impl ActionSpace {
     }
 
     /// The action nearest to this turn (rad clockwise) and speed, the inverse of
-    /// [`ActionSpace::set_point`]; none for options.
+    /// [`ActionSpace::set_point`]; `None` for options.
     pub fn nearest(self, turn_rad: f64, speed_m_s: f64, speed_max_m_s: f64) -> Option<Action> {
         let share = (speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
         if self == ActionSpace::Continuous {

@@ -32,7 +32,7 @@ pub struct Outcome {
     /// which team is better.
     #[serde(default)]
     pub ends_differ: bool,
-    /// The winning team's name; none for a draw or an unfinished game.
+    /// The winning team's name; `None` for a draw or an unfinished game.
     pub winner: Option<String>,
     /// The team of each boat.
     pub boats: BTreeMap<String, String>,

@@ -4,7 +4,7 @@
 //! A key is a field of a type, and is declared only once, there:
 //!
 //! ```text
-//! /// An intruder is tagged closer than this, m.
+//! /// Distance below which an intruder is tagged, m.
 //! #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
 //! pub tag_radius_m: f64,
 //! ```

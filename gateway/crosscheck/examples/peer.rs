@@ -1,5 +1,5 @@
 //! Our codec as a peer of `pynmea2_check.py`: `peer write` writes sentences of every kind with
-//! their values, `peer read` prints the values that it reads in the lines of its input.
+//! their values, `peer read` prints the values that it reads from each line of its input.
 //!
 //! The values of a sentence form a line of tab-separated `name=value` pairs, as `Debug` prints
 //! them.
@@ -14,7 +14,7 @@ use proptest::test_runner::TestRunner;
 use sentences::{Domain, on_the_globe, sentences};
 use std::io::{BufRead, Write};
 
-/// Sentences that `write` writes.
+/// The sentences that `write` writes.
 const COUNT: u32 = 3200;
 
 fn main() {

@@ -1,7 +1,9 @@
-//! The nmea crate reads what we write, and we read what it reads, with the same values.
+//! The nmea crate reads our sentences and we read the sentences that it can read, with the same
+//! values.
 //!
-//! It has no writer. The sentences of the second test are therefore assembled here, with the
-//! variations found among devices: leading zeros, more or fewer decimal places, and empty fields.
+//! The crate has no writer. The sentences of the second test are therefore assembled in this file,
+//! with the variations found among devices: leading zeros, more or fewer decimal places, and empty
+//! fields.
 
 #[allow(dead_code, reason = "the tests of the codec use more of it")]
 #[path = "../../tests/nmea/sentences.rs"]
@@ -16,7 +18,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use sentences::{Domain, on_the_globe, standard_sentences};
 
-/// Half of the last digit that we write, plus a little: the crate computes most numbers in single
+/// Half of our last digit, plus a small margin, because the crate computes most numbers in single
 /// precision.
 const TENTH: f64 = 0.0501;
 const HUNDREDTH: f64 = 0.00502;
@@ -40,7 +42,7 @@ fn near_place(ours: Option<LatLon>, lat_deg: Option<f64>, lon_deg: Option<f64>) 
     );
 }
 
-/// The same within the rounding of a floating second.
+/// The same to within the rounding of a floating-point second.
 fn same_time(ours: Option<TimeOfDay>, theirs: Option<chrono::NaiveTime>) {
     let ms = |time: chrono::NaiveTime| {
         f64::from(time.num_seconds_from_midnight()) * 1e3 + f64::from(time.nanosecond()) / 1e6
@@ -65,7 +67,7 @@ fn same_date(ours: Option<Date>, theirs: Option<chrono::NaiveDate>) {
     assert_eq!(ours, theirs);
 }
 
-/// Checks that both have the same values.
+/// Checks that both readers give the same values.
 fn agree(ours: &Sentence, theirs: &ParseResult) {
     match (ours, theirs) {
         (Sentence::Gga(a), ParseResult::GGA(b)) => {
@@ -133,7 +135,7 @@ fn ours(line: &str) -> Sentence {
         .unwrap_or_else(|e| panic!("we reject {line}: {e}"))
 }
 
-/// Sentences that the crate reads: it has no magnetic heading, and needs some of the numbers.
+/// Sentences that the crate can read: it has no magnetic heading, and requires some of the numbers.
 fn sentence() -> impl Strategy<Value = Sentence> {
     let domain = Domain {
         angles: (0.0..359.9).boxed(),
@@ -141,7 +143,7 @@ fn sentence() -> impl Strategy<Value = Sentence> {
         signed: (-99.0..999.0).boxed(),
         texts: "".boxed(),
         places: on_the_globe(),
-        // The crate takes the years 80 to 82 to be in this century.
+        // The crate takes the years 80 to 82 as years of this century.
         years: 1983..2080,
         day_ms: 0..86_400_000,
     };
@@ -157,7 +159,7 @@ fn sentence() -> impl Strategy<Value = Sentence> {
     })
 }
 
-/// Lines as other devices write them.
+/// Lines in the format of other devices.
 fn foreign() -> BoxedStrategy<String> {
     let number = || {
         select(vec![

@@ -18,7 +18,7 @@ const SAME_HEADING_DEG: f64 = 1.1;
 /// recovers in between, someone else is sending it standby.
 const DEPARTURES: usize = 2;
 const DEPARTURES_S: f64 = 5.0;
-/// Foreign orders count for this long after they were seen, s.
+/// Time for which foreign orders count after they were seen, s.
 const FOREIGN_MEMORY_S: f64 = 5.0;
 /// Capacity for sent commands: 20 a second for the longest echo delay of a boat.
 const SENT_MAX: usize = 640;

@@ -17,7 +17,7 @@ pub(super) enum RecoveryPoint {
     /// The mission with the point is being uploaded: latitude and longitude, degrees, and whether
     /// the boat has shown that it accepts lines.
     Uploading([f64; 2], bool),
-    /// The boat has accepted the point: latitude and longitude, degrees.
+    /// The boat has accepted the point (latitude and longitude in degrees).
     Taken([f64; 2]),
 }
 

@@ -27,7 +27,7 @@ pub enum Verdict {
     Passed,
     /// Failed.
     Failed,
-    /// Not checked, or not possible here.
+    /// Not checked, or could not be checked.
     NotChecked,
 }
 

@@ -44,7 +44,7 @@ use scenario::boat::{Drive, Windage};
 use scenario::sea::Sea;
 use std::sync::Arc;
 
-/// Distance of the propellers astern of midships, as a fraction of the length.
+/// Distance of the propellers astern of the midship point, as a fraction of the length.
 const PROPELLER_ASTERN: f64 = 0.4;
 
 /// Large tables shared by size of hull.
@@ -321,7 +321,7 @@ impl SeaNow<'_> {
         self.model.waves.as_ref()
     }
 
-    /// The waves for observers; none in calm water.
+    /// The waves for observers; empty in calm water.
     pub fn water(&self) -> Water {
         Water {
             waves: self.waves().map(WaveField::plane_waves).unwrap_or_default(),

@@ -21,7 +21,7 @@ pub(crate) fn shipped(game: &str) -> Scenario {
     scenario::load(&scenarios().join("games").join(game)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A game written here; paths in it are relative to `scenarios/games`.
+/// A game written in a test; paths in it are relative to `scenarios/games`.
 pub(crate) fn written(toml: &str) -> Scenario {
     let dir = tempfile::tempdir().expect("a temporary directory can be created");
     let root = scenarios().canonicalize().expect("the scenarios exist");

@@ -34,7 +34,7 @@ pub struct StopRequest {
     pub game: Option<String>,
 }
 
-/// The states of boats, by name: the state as a string, and its age when the answer was made, ms.
+/// The states of boats, by name: the state as a string, and its age in ms when the answer was made.
 /// The string is empty for a silent boat.
 pub type States = BTreeMap<String, (String, u64)>;
 

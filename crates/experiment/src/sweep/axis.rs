@@ -92,7 +92,7 @@ impl AxisValue {
 /// The target of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A key in the files of a kind.
+    /// A key in files of one kind.
     Key,
     /// A file that the game names under the same key as the axis.
     File,

@@ -33,7 +33,7 @@ static SCENARIOS: LazyLock<[Scenario; 2]> =
 
 /// The magic bytes of MCAP files.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-/// Opcodes of the records parsed here.
+/// Opcodes of the records parsed in this file.
 const CHUNK: u8 = 6;
 const METADATA: u8 = 12;
 const DATA_END: u8 = 15;

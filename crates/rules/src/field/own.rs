@@ -22,7 +22,7 @@ impl Field {
             .map(|(i, flag)| (FlagId(i as u8), flag.home))
     }
 
-    /// The home nearest to `at` among `team`'s own flags; none without flags.
+    /// The home nearest to `at` among `team`'s own flags; `None` without flags.
     pub fn nearest_own_flag(&self, team: TeamId, at: Ned) -> Option<Ned> {
         at.nearest_of(self.own_flags(team).map(|(_, home)| home))
     }

@@ -265,7 +265,7 @@ pub struct AvoidCollision {
     /// Distance with zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 15))]
     pub outer_m: Parameter,
-    /// CPA with half utility; less is worse, m.
+    /// CPA with half utility, m; less is worse.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 3))]
     pub cpa_min_m: Parameter,
     /// CPA with full utility, m.
@@ -330,7 +330,7 @@ pub struct AvoidObstacle {
     /// Distance with zero weight, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 15))]
     pub outer_m: Parameter,
-    /// Passing distance with half utility; less is worse, m.
+    /// Passing distance with half utility, m; less is worse.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 1))]
     pub cpa_min_m: Parameter,
     /// Passing distance with full utility, m.

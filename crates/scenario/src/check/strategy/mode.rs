@@ -8,7 +8,7 @@ use crate::strategy::Mode;
 /// Maximum nesting depth of modes.
 const DEEPEST: usize = 20;
 
-/// Checks the modes; none if they do not form a tree.
+/// Checks the modes; `None` if they do not form a tree.
 pub(super) fn modes(scope: &Scope<'_>) -> Option<Vec<Mode>> {
     let given = &scope.document.raw.mode;
     if given.is_empty() {

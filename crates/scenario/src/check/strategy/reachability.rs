@@ -184,7 +184,7 @@ impl Terms<'_> {
         Expression::Variable(index as u16)
     }
 
-    /// One side of a comparison between a term and a constant; none for other comparisons.
+    /// One side of a comparison between a term and a constant; `None` for other comparisons.
     fn compared(&mut self, side: &Expression, other: &Expression) -> Option<Expression> {
         if let Some(constant) = side.constant() {
             return Some(Expression::Constant(constant));
