@@ -286,7 +286,7 @@ fn name_of(path: &Path, extension: &str) -> Option<String> {
     is_wanted.then(|| path.file_stem()?.to_str().map(str::to_owned))?
 }
 
-/// Whether a file's name ends like a scenario file's; on Windows, case is ignored.
+/// Whether a file has the extension `.toml`, in any case.
 pub fn is_toml(path: &Path) -> bool {
     path.extension()
         .is_some_and(|end| end.eq_ignore_ascii_case("toml"))
