@@ -3,9 +3,9 @@
 use crate::output_file;
 use anyhow::{Context, Result, bail};
 use experiment::tournament::{League, Plan, Record};
-use primitives::input_file::TABLE_BYTES_MAX;
+use primitives::input_file::{self, TABLE_BYTES_MAX};
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The results, one line per game.
@@ -27,7 +27,7 @@ impl LeagueFile {
         output_file::make_folder(folder)?;
         let path = folder.join(RESULTS);
         let what = || format!("cannot open the league {}", path.display());
-        let mut file = OpenOptions::new()
+        let file = OpenOptions::new()
             .read(true)
             .append(true)
             .create(true)
@@ -40,23 +40,10 @@ impl LeagueFile {
             Err(TryLockError::Error(error)) => return Err(error).with_context(what),
             Ok(()) => {}
         }
-        let metadata = file.metadata().with_context(what)?;
-        if !metadata.is_file() {
-            bail!("{} is not a file", path.display());
-        }
-        let bytes = metadata.len();
-        if bytes > TABLE_BYTES_MAX {
-            bail!(
-                "{} has {bytes} bytes, expected at most {TABLE_BYTES_MAX}",
-                path.display()
-            );
-        }
-        let mut text = String::new();
-        file.read_to_string(&mut text).with_context(what)?;
+        let text = input_file::read_text(&path, TABLE_BYTES_MAX).with_context(what)?;
         let league = League::parse(&text).with_context(what)?;
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         file.set_len(whole as u64).with_context(what)?;
-        file.seek(SeekFrom::End(0)).with_context(what)?;
         Ok(LeagueFile {
             folder: folder.to_owned(),
             path,

@@ -81,7 +81,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
     let mut report = Report::new(&plan, &records);
     report.commit = env!("SQUALL_COMMIT").to_owned();
-    report.rate = Some(rate);
+    // A league that was stopped and continued ends with the same bytes as one that was not.
+    report.rate = league.is_none().then_some(rate);
     let of_league = league.as_ref().map(LeagueFile::report);
     for path in args.json.iter().chain(&of_league) {
         output_file::write_json(

@@ -12,6 +12,7 @@ use parking_lot::Mutex;
 use std::sync::Arc;
 use std::time::Duration;
 use zenoh::Wait;
+use zenoh::qos::CongestionControl;
 use zenoh::query::Query;
 
 /// Longer than the validity of a proof.
@@ -205,14 +206,21 @@ fn gateway_reports_cannot_be_forged() {
         ..GatewayStatus::default()
     };
     let status = serde_json::to_vec(&status).expect("JSON");
-    for ticket in 0..200 {
-        intruder.publish("status/blue_one", status.clone());
-        intruder.publish("link/blue_one", b"FORGED".to_vec());
-        for what in Reported::ALL {
-            intruder.publish(
-                &format!("report/{what}/blue_one"),
-                Reported::with_ticket(ticket, &status),
-            );
+    for what in Reported::ALL {
+        let key = intruder.topic(&format!("report/{what}/blue_one"));
+        let publisher = intruder.session.declare_publisher(key);
+        // zenoh would drop reports in the intruder's own session: before it knows of a subscriber,
+        // and when its queue is full.
+        let publisher = publisher.congestion_control(CongestionControl::Block);
+        let publisher = publisher.wait().expect("the session is open");
+        wait_until("the sim subscribes to reports", || {
+            let status = publisher.matching_status().wait();
+            status.is_ok_and(|status| status.matching())
+        });
+        for ticket in 0..200 {
+            intruder.publish(&format!("{what}/blue_one"), status.clone());
+            let report = Reported::with_ticket(ticket, &status);
+            publisher.put(report).wait().expect("the session is open");
         }
     }
     intruder.publish("report/status/blue_one", b"1234567".to_vec());

@@ -407,8 +407,17 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| (name, name));
     let said = play(&[four, pav01], &["--league", &league]);
     assert!(said.contains("0 of 4 games already played"), "{said}");
-    // The last line was truncated when the machine stopped.
+    // The last line was truncated when the machine stopped. The league continues to the same bytes.
     let text = std::fs::read_to_string(&results).unwrap();
+    let uninterrupted = std::fs::read(format!("{league}/report.json")).unwrap();
+    std::fs::write(&results, &text[..text.len() - 9]).unwrap();
+    let said = play(&[four, pav01], &["--league", &league]);
+    assert!(said.contains("3 of 4 games already played"), "{said}");
+    assert_eq!(std::fs::read_to_string(&results).unwrap(), text);
+    assert_eq!(
+        std::fs::read(format!("{league}/report.json")).unwrap(),
+        uninterrupted
+    );
     std::fs::write(&results, &text[..text.len() - 9]).unwrap();
     let said = play(&[four, pav01, idle], &["--league", &league]);
     assert!(
@@ -419,7 +428,7 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     play(&[four, pav01, idle], &["--json", &whole]);
     let mut known = json(&format!("{league}/report.json"));
     let mut anew = json(&whole);
-    (known["rate"], anew["rate"]) = (Value::Null, Value::Null);
+    anew["rate"] = Value::Null;
     // Only the history knows that idle joined later: it is rated after its first game.
     let joined = |report: &mut Value| {
         let idle = report["entries"]
@@ -467,6 +476,20 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
             "{why}"
         );
         assert!(why.contains(expected), "{why}");
+    }
+}
+
+#[test]
+fn an_endless_file_in_place_of_a_leagues_results_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for endless in ["/proc/kmsg", "/dev/zero"] {
+        let results = place(&dir, "results.jsonl");
+        std::os::unix::fs::symlink(endless, &results).unwrap();
+        let refused = output(&["tournament", "simple", "--league", &place(&dir, "")]);
+        let why = String::from_utf8(refused.stderr).unwrap();
+        assert!(why.contains("cannot open the league"), "{endless}: {why}");
+        assert!(!refused.status.success());
+        std::fs::remove_file(&results).unwrap();
     }
 }
 

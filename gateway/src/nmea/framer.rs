@@ -72,7 +72,7 @@ impl Framer {
     /// (between `$` and `*`, ASCII) of each sentence with a valid checksum, in order.
     ///
     /// A sentence ends with CR, LF or the next `$`, whichever comes first, so a peer may use only
-    /// one of them. Spaces and NULs after the checksum are padding.
+    /// one of them. Spaces, tabs and NULs after the checksum are padding.
     pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(&str)) {
         for &byte in bytes {
             match (byte, self.filled) {
@@ -90,7 +90,7 @@ impl Framer {
                     self.filled = Some(filled + 1);
                 }
                 // Records of fixed length are padded with NULs.
-                (0, Some(filled)) if split(&self.content[..filled]).is_some() => {}
+                (0 | b'\t', Some(filled)) if split(&self.content[..filled]).is_some() => {}
                 (_, filled) => self.stray(byte, filled),
             }
         }

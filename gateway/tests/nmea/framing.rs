@@ -16,9 +16,9 @@ fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
     let mut parts = bytes.split(|byte| *byte == b'$').peekable();
     counts.garbage += noise(parts.next().expect("a split has a first part"));
     while let Some(part) = parts.next() {
-        // NULs after a whole checksum are padding.
+        // NULs and tabs after a whole checksum are padding.
         let part = part.iter().fold(Vec::new(), |mut kept: Vec<u8>, byte| {
-            kept.extend((*byte != 0 || !is_whole(&kept)).then_some(*byte));
+            kept.extend((!b"\0\t".contains(byte) || !is_whole(&kept)).then_some(*byte));
             kept
         });
         let end = part
@@ -217,7 +217,7 @@ fn each_fault_has_its_count() {
 
 #[test]
 fn padding_after_the_checksum_and_a_missing_line_end_do_no_harm() {
-    for end in [" \r\n", "\0\r\n", " \0\0 \n", "", " ", "\0"] {
+    for end in [" \r\n", "\0\r\n", "\t\0\0 \n", "", " ", "\0"] {
         let stream = format!("$PSEAG,N*22{end}$PSEAG,N*22{end}$");
         assert_eq!(
             framed([&stream]),
