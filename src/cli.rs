@@ -51,7 +51,7 @@ Squall simulates boats that play capture the flag.
 
   squall demo                         a windy game in the browser
   squall run strategy_4_vs_3          a game in the terminal
-  squall run surveyor_2v2 --sea gale --blue learned --view
+  squall run surveyor_2v2 --sea fresh_breeze --blue learned --view
   squall files                        games, seas and strategies by name
   squall new strategy mine            your own strategy file, to edit and play:
   squall run surveyor_2v2 --blue mine
