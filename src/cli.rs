@@ -106,7 +106,9 @@ pub(crate) fn matches() -> ArgMatches {
     let mut command = number::with_negative_numbers(command());
     command
         .try_get_matches_from_mut(std::env::args_os())
-        .unwrap_or_else(|error| {
+        .unwrap_or_else(|mut error| {
+            // For an unknown option, this suggests passing it as a recording.
+            error.remove(ContextKind::Suggested);
             if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
                 && GROUPS
                     .iter()
