@@ -51,7 +51,7 @@ Squall simulates boats that play capture the flag.
 
   squall demo                         a windy game in the browser
   squall run strategy_4_vs_3          a game in the terminal
-  squall run surveyor_2v2 --sea gale --blue learned --view
+  squall run surveyor_2v2 --sea fresh_breeze --blue learned --view
   squall files                        games, seas and strategies by name
   squall new strategy mine            your own strategy file, to edit and play:
   squall run surveyor_2v2 --blue mine
@@ -107,7 +107,9 @@ pub(crate) fn matches() -> ArgMatches {
     let mut command = number::with_negative_numbers(command());
     command
         .try_get_matches_from_mut(std::env::args_os())
-        .unwrap_or_else(|error| {
+        .unwrap_or_else(|mut error| {
+            // For an unknown option, this suggests passing it as a recording.
+            error.remove(ContextKind::Suggested);
             if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
                 && GROUPS
                     .iter()

@@ -64,7 +64,7 @@ enum Command {
     #[cfg(not(feature = "network"))]
     /// Plays a whole game, shows its events, and prints the result.
     #[command(
-        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3\n  squall run strategy_4_vs_3 --set link.delay_s=1 --seed 7 --both-sides"
+        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea fresh_breeze --blue learned --red strategy_3\n  squall run strategy_4_vs_3 --set link.delay_s=1 --seed 7 --both-sides"
     )]
     Run(Box<run_command::Args>),
     #[cfg(not(feature = "network"))]

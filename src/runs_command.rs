@@ -23,6 +23,10 @@ type Row = [String; 5];
 
 pub(crate) fn run(args: &Args) -> ExitCode {
     let runs = recording_file::runs(&args.folder);
+    if runs.is_empty() {
+        screen::remark(&recording_file::none_in(&args.folder));
+        return ExitCode::SUCCESS;
+    }
     let mut rows = vec![["name", "when (UTC)", "length", "score", "strategies"].map(str::to_owned)];
     rows.extend(runs.iter().take(args.count).map(|path| {
         let unreadable = |error: anyhow::Error| {

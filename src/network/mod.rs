@@ -39,7 +39,7 @@ pub(crate) enum Command {
     /// Plays a whole game: starts the simulation and the agents, shows events, and prints the
     /// result.
     #[command(
-        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run strategy_4_vs_3 --set link.delay_s=1 --seed 7 --both-sides"
+        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea fresh_breeze --blue learned --view\n  squall run strategy_4_vs_3 --set link.delay_s=1 --seed 7 --both-sides"
     )]
     Run(run_command::Args),
     /// Simulates and serves one game, which agents and gateways join.

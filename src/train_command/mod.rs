@@ -16,7 +16,7 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// Size limit of a state, bytes: networks of the maximum size, and a league of them.
@@ -62,15 +62,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     // Learning uses all threads, however few games are played.
     let jobs = args.jobs.threads(usize::MAX).get();
     let stop = stop::on_ctrl_c()?;
-    let writing = Arc::new(Mutex::new(()));
-    let held = Arc::clone(&writing);
+    // The samples in the saved state; locked while the files of an update are incomplete.
+    let saved = Arc::new(Mutex::new(0));
+    let held = Arc::clone(&saved);
     stop::when_late(&stop, move || {
-        // Never exit while the files of an update are incomplete.
-        let _complete = held.lock();
-        screen::remark("stopped during an update; --resume continues from the last saved state");
+        let samples = held.lock().unwrap_or_else(PoisonError::into_inner);
+        screen::remark(&stopped("during an update; saved", *samples));
         std::process::exit(130);
     });
     let mut trainer = begin(args, training, &folder, jobs)?;
+    let kept = || saved.lock().unwrap_or_else(PoisonError::into_inner);
+    *kept() = trainer.samples().0;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
     let recordings = args
         .record_every
@@ -94,18 +96,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     while !trainer.is_over() {
         let is_enough = args.until.is_some_and(|until| trainer.samples().0 >= until);
         if is_enough || stop.load(Ordering::Relaxed) {
-            let _complete = writing.lock();
+            let _complete = kept();
             progress.end();
             let samples = trainer.samples().0;
             if samples > done {
                 files.keep_state(samples, &trainer.state())?;
             }
-            let next = if samples > 0 {
-                "; --resume continues from there"
-            } else {
-                ""
-            };
-            screen::remark(&format!("stopped after {samples} samples{next}"));
+            screen::remark(&stopped("after", samples));
             return Ok(if is_enough {
                 ExitCode::SUCCESS
             } else {
@@ -113,7 +110,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             });
         }
         let update = trainer.update()?;
-        let _complete = writing.lock();
+        let mut complete = kept();
         let stage = &trainer.training().stage[update.stage].name;
         if told_stage.replace(update.stage) != Some(update.stage) {
             progress.print(&format!("stage {stage}"));
@@ -134,6 +131,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let began = clock::now();
         if update.games_restart || began >= next_save {
             files.keep_state(update.samples, &trainer.state())?;
+            *complete = update.samples;
             next_save = clock::now() + SAVE_EVERY.max(began.elapsed() * SAVE_SHARE);
         }
     }
@@ -141,7 +139,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     finish(&trainer, &folder)
 }
 
-/// The strategy whose helm uses the policy in the last stage, or the one next to the training file.
+fn stopped(when: &str, samples: u64) -> String {
+    let next = if samples > 0 {
+        "; --resume continues from there"
+    } else {
+        ""
+    };
+    format!("stopped {when} {samples} samples{next}")
+}
+
+/// The strategy whose helm uses the policy in the last stage, or the one beside the training file.
 fn base(file: &Path, training: &Training) -> PathBuf {
     let helm = training
         .stage

@@ -66,6 +66,33 @@ fn a_name_does_for_every_scenario_file() {
 }
 
 #[test]
+fn a_model_plays_like_the_strategy_that_uses_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/policies/options.onnx");
+    std::fs::copy(model, dir.path().join("trained_1.onnx")).unwrap();
+    let digest = |strategy: &str| {
+        let how = ["--in-process", "--no-record", "--set", "game.duration_s=20"];
+        let said = printed(
+            &dir,
+            &[&["run", "surveyor_2v2", "--blue", strategy][..], &how].concat(),
+        );
+        said.split("digest ").nth(1).unwrap()[..32].to_owned()
+    };
+    let want = digest("learned");
+    for model in ["trained_1.onnx", "scenarios/policies/options.onnx"] {
+        assert_eq!(digest(model), want, "{model}");
+        assert!(
+            printed(&dir, &["policy", model]).contains("options: a value"),
+            "{model}"
+        );
+    }
+    // The strategy beside a model wins, as a training writes it.
+    let strategy = "base = \"strategy_4\"\n";
+    std::fs::write(dir.path().join("trained_1.toml"), strategy).unwrap();
+    assert_eq!(digest("trained_1.onnx"), digest("strategy_4"));
+}
+
+#[test]
 fn a_recording_has_a_name_and_the_newest_needs_none() {
     let dir = tempfile::tempdir().unwrap();
     for args in [&["log"][..], &["replay", "--check"]] {

@@ -80,7 +80,8 @@ fn mistakes_in_the_command_line_exit_with_2_and_name_the_next_step() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let is_right = output.status.code() == code.parse().ok()
             && said.contains(want)
-            && !said.contains("os error");
+            && !said.contains("os error")
+            && !said.contains("as a value, use '--");
         (!is_right).then(|| {
             format!(
                 "{line}: expected {code} and {want:?}, found {} and {said}",

@@ -4,8 +4,9 @@
 use crate::program::{command, printed, refusal, scenario};
 use std::collections::BTreeSet;
 use std::fs::DirEntry;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
 /// A folder with the file `short.toml` of a training run with two short stages.
@@ -117,6 +118,32 @@ fn a_training_leaves_the_same_files_on_any_number_of_threads() {
         ],
     );
     assert!(result.contains("after 600 s"), "{result}");
+}
+
+#[test]
+fn a_training_that_stops_within_an_update_says_where_it_continues() {
+    let dir = training();
+    let file = dir.path().join("short.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    // An update of half a million samples.
+    std::fs::write(&file, text.replace("steps = 32", "steps = 65536")).unwrap();
+    let mut process = command(&dir, &["train", "short.toml", "--out", "one"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut error = BufReader::new(process.stderr.take().unwrap());
+    let mut said = String::new();
+    while !said.contains("model of") && error.read_line(&mut said).unwrap() > 0 {}
+    let killed = Command::new("kill")
+        .args(["-INT", &process.id().to_string()])
+        .status();
+    assert!(killed.unwrap().success());
+    error.read_to_string(&mut said).unwrap();
+    assert_eq!(process.wait().unwrap().code(), Some(130), "{said}");
+    assert!(
+        said.contains("stopped during an update; saved 0 samples\n"),
+        "{said}"
+    );
 }
 
 #[test]

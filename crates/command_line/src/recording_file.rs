@@ -59,11 +59,17 @@ pub fn or_newest(given: Option<&Path>) -> Result<PathBuf> {
         return Ok(path.to_owned());
     }
     let newest = runs(Path::new(FOLDER)).into_iter().next();
-    let newest = newest.with_context(|| {
-        format!("no recordings in {FOLDER}/; record a game, for example with: squall run strategy_4_vs_3")
-    })?;
+    let newest = newest.with_context(|| none_in(Path::new(FOLDER)))?;
     terminal::remark(&format!("using the newest recording: {}", newest.display()));
     Ok(newest)
+}
+
+/// What to do in a folder without recordings.
+pub fn none_in(folder: &Path) -> String {
+    format!(
+        "no recordings in {}/; record a game, for example with: squall run strategy_4_vs_3",
+        folder.display()
+    )
 }
 
 /// Opens the recording of a game; errors name the purpose `to`, for example "replay".

@@ -81,6 +81,9 @@ pub fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<Path
         if entry::is_strategy_path(&given) {
             return Ok(given);
         }
+        if given.extension().is_some_and(|end| end == POLICIES.1) {
+            return find_policy(word).map(|model| entry::policy_path(&model));
+        }
     }
     if given.extension().is_some_and(|end| end == "mcap") {
         bail!(
@@ -136,6 +139,9 @@ pub fn find_any(word: &str) -> Result<Vec<PathBuf>> {
 /// Finds the policy that an argument names: a path, or a name in `scenarios/policies`.
 pub fn find_policy(word: &str) -> Result<PathBuf> {
     if is_path(word, POLICIES.1) {
+        if built_in(Path::new(word)).is_some() {
+            return Ok(word.into());
+        }
         return existing(word).map_err(anyhow::Error::msg);
     }
     located(word, POLICIES, None).ok_or_else(|| {

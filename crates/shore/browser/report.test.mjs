@@ -85,7 +85,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   await sight.press('#games tbody tr:nth-child(2) a');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   const about = await sight.text('#about');
-  assert.match(about, new RegExp(`seed ${want[1].seed}; rerun, identical to the report$`), about);
+  assert.match(about, new RegExp(`strategy 4 .*seed ${want[1].seed}; rerun, identical to the report$`), about);
   await sight.page.press('#timeline', 'End');
   await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual(await sight.get(() => squall.score), want[1].score);
@@ -214,7 +214,7 @@ test('the worst games of a sweep are watched from its page', async (t) => {
   assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .effect')).position), 'absolute', 'the style sheet is served');
   await sight.press('#worst-list .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
-  assert.match(await sight.text('#about'), /strategy_4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; rerun, identical to the report/);
+  assert.match(await sight.text('#about'), /strategy 4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; rerun, identical to the report/);
   await sight.page.press('#timeline', 'End');
   await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [...worst.score].sort());
@@ -249,7 +249,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   await sight.press('#games-table tbody tr:last-child .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   const last = own.findLast((game) => game.entry === 'strategy_4');
-  assert.equal(await sight.text('#about'), `strategy_4 (${last.side}) at sea.wind.speed_m_s 12, seed ${last.seed}; rerun, identical to the report`);
+  assert.equal(await sight.text('#about'), `strategy 4 (${last.side}) at sea.wind.speed_m_s 12, seed ${last.seed}; rerun, identical to the report`);
   await sight.page.press('#timeline', 'End');
   await sight.until('the replay is at its end', () => squall.t_s > 59.9);
   assert.deepEqual((await sight.get(() => squall.score)).sort(), [last.score, last.opponent_score].map(Number).sort());

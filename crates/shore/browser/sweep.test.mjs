@@ -38,6 +38,8 @@ async function open(t, { out }, { report = null, hash = '', ...more } = {}) {
   return page;
 }
 
+/** A name as on every page. */
+const spelled = (name) => name.replaceAll('_', ' ');
 /** The index of a metric, and how the page writes its values. */
 const metric = (report, name) => report.metrics.findIndex((each) => each.name === name);
 const percent = (mean) => `${Number((100 * mean).toPrecision(3))}`.replace('-', '−');
@@ -50,12 +52,13 @@ test('the page of a sweep shows the report as curves, a heat map and a tornado c
   assert.equal(await page.textContent('#facts'), HOSTILE);
   assert.equal(await page.textContent('#state'), `all ${report.games} games played`);
 
+  assert.match(await page.innerText('#sweep-facts'), /Opponent\s+strategy 3/);
   const charts = page.locator('#curve-charts .card');
   assert.equal(await charts.count(), report.axes.length);
   for (const [axis, key] of report.axes.entries()) {
     const lines = charts.nth(axis).locator('path.line');
     assert.equal(await charts.nth(axis).getAttribute('data-axis'), key);
-    assert.deepEqual(await lines.evaluateAll((all) => all.map((line) => line.dataset.entry)), report.entries);
+    assert.deepEqual(await lines.evaluateAll((all) => all.map((line) => line.dataset.entry)), report.entries.map(spelled));
     const corners = await lines.evaluateAll((all) => all.map((line) => line.getAttribute('d').match(/[ML]/g).length));
     assert.deepEqual(corners, report.entries.map(() => report.effects[axis * report.entries.length].levels.length));
     assert.equal(await charts.nth(axis).locator('path.band').count(), report.entries.length);
@@ -153,7 +156,7 @@ test('the values of a level are shown by pointer and by keyboard', async (t) => 
   await has(0, box);
   await page.keyboard.press('ArrowRight');
   await has(1, box);
-  assert((await page.textContent('#said')).includes(report.entries[1]));
+  assert((await page.textContent('#said')).includes(spelled(report.entries[1])));
   await page.keyboard.press('Escape');
   assert(!(await box.isVisible()));
 });
@@ -182,7 +185,7 @@ test('the points are sorted by the column pressed', async (t) => {
   const played = await sweep(t);
   const { report } = played;
   const page = await open(t, played, { hash: '#metric=distance_m' });
-  const column = page.getByRole('columnheader', { name: report.entries[1] }).last().getByRole('button');
+  const column = page.getByRole('columnheader', { name: spelled(report.entries[1]) }).last().getByRole('button');
   const order = () => page.locator('#points-table tbody th').evaluateAll((all) => all.map((head) => Number(head.textContent)));
   const mean = (point) => report.points[point].entries[1].metrics[metric(report, 'distance_m')].mean;
   const rising = report.points.map((_, point) => point).sort((a, b) => mean(a) - mean(b));

@@ -111,7 +111,7 @@ export class Status {
 
   tellPane(game) {
     const { chart, hello, state, player } = game;
-    const pairs = [['Game', plain(hello?.game || chart.name || '–')], ['Field', plain(chart.field?.name ?? '–')], ['Rules', plain(chart.rules ?? '–')], ['Sea', plain(chart.sea ?? '–')],
+    const pairs = [['Game', hello?.game || chart.name || '–'], ['Field', plain(chart.field?.name ?? '–')], ['Rules', plain(chart.rules ?? '–')], ['Sea', plain(chart.sea ?? '–')],
       ['Seed', String(chart.seed ?? '–')], ['Boats', String(game.count)], ['Decision period', number(chart.decision_s, 2, 's')]];
     if (state) pairs.push(...this.stateFacts(state));
     if (player) {

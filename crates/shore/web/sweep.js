@@ -5,7 +5,7 @@ import { commandOf } from './command.js';
 import { ticksOf } from './diagram.js';
 import { palette } from './palette.js';
 import { scrolled, tableOf } from './table.js';
-import { make, significant, stem, svg } from './words.js';
+import { make, plain, significant, stem, svg } from './words.js';
 
 /** Constant parts. Texts of a report only ever become text nodes. */
 const SECTIONS = `
@@ -88,6 +88,8 @@ export class Sweep {
 
   tell(told) {
     ({ report, playable: isPlayable } = told);
+    report.entries = report.entries.map(plain);
+    for (const one of [...report.worst, ...report.interactions]) one.entry = plain(one.entry);
     axisTitles = report.axes.map((key, axis) => titleOf(key, report.axis_meanings?.[axis]));
     axisDigits = report.axes.map((_, axis) => digitsFor(axis));
     keepAddress();
@@ -281,8 +283,8 @@ function drawFacts() {
   };
   const without = points.filter((point) => point.seeds === 0).length;
   const facts = [
-    ['Game', make('span', { title: report.game }, '', soft(stem(report.game)))],
-    ['Opponent', make('span', { title: report.opponent }, '', soft(stem(report.opponent)))],
+    ['Game', make('span', { title: report.game }, '', plain(stem(report.game)))],
+    ['Opponent', make('span', { title: report.opponent }, '', plain(stem(report.opponent)))],
     ['Design', `${DESIGNS[report.design] ?? report.design}, ${points.length} ${points.length === 1 ? 'point' : 'points'}`],
     ['Seeds', `${firstSeed()}${seeds > 1 ? ` to ${last}` : ''}; ${report.games_per_point} games per entry and point`],
     ['Games', `${done} of ${games}${without > 0 ? `; ${without} of ${points.length} points have no complete seed yet` : ''}`],

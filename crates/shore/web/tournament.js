@@ -54,7 +54,7 @@ export class Tournament {
     this.drawMatrix();
     this.fromAddress();
     const played = report.games_unplayed > 0 ? `, ${report.games_unplayed} games not played` : '';
-    const facts = `${stem(report.game)}${report.sea ? `, sea ${stem(report.sea)}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
+    const facts = `${plain(stem(report.game))}${report.sea ? `, sea ${plain(stem(report.sea))}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
       + `${report.seeds_counted} seeds from ${report.seed}${played}. Squall ${report.version} (${report.commit || 'unknown'}).`;
     return { name: report.tournament, facts, remarks: this.remarks() };
   }
@@ -164,7 +164,7 @@ export class Tournament {
       { text: 'Difference', classes: 'number', key: (one) => one.score_difference, cell: (one) => cell(signed(one.score_difference), 'number') },
       { text: '', cell: (one) => this.gamesButton(one) },
     ];
-    const facts = `Place ${place} of ${this.entries.length}, rating ${number(rating.elo, 0)} (95 %: ${this.interval(rating)}). ${wins} won, ${draws} drawn, ${losses} lost.${stem(chosen.strategy) === name ? '' : ` Strategy ${stem(chosen.strategy)}.`}`;
+    const facts = `Place ${place} of ${this.entries.length}, rating ${number(rating.elo, 0)} (95 %: ${this.interval(rating)}). ${wins} won, ${draws} drawn, ${losses} lost.${stem(chosen.strategy) === name ? '' : ` Strategy ${plain(stem(chosen.strategy))}.`}`;
     this.entry.replaceChildren(make('div', 'choose', '', make('h2', '', plain(name)), back), make('p', 'faint', facts),
       sortedTable('Opponents', columns, against, this.orders.entry, () => this.drawEntry()),
       make('p', 'faint', 'The hardest opponent first. Win rate: draws count half. Points are means per game.'));

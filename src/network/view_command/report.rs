@@ -108,7 +108,9 @@ impl TournamentReport {
             .map_err(|why| anyhow!("cannot rerun games: {why}"))?;
         let place = place_of(name, plan.games())?;
         let (of, scenario) = plan.match_at(place);
-        let [blue, red] = of.sides.map(|entry| &plan.tournament().entries[entry].name);
+        let [blue, red] = of
+            .sides
+            .map(|entry| plan.tournament().entries[entry].name.replace('_', " "));
         let teams = plan.teams();
         Ok(Game {
             about: format!(
@@ -253,7 +255,7 @@ impl SweepReport {
             .zip(values)
             .map(|(axis, value)| format!("{} {value}", axis.key))
             .collect();
-        let entry = &sweep.entries[job.entry].name;
+        let entry = sweep.entries[job.entry].name.replace('_', " ");
         let team = &plan.teams()[job.side];
         Ok(Game {
             about: format!("{entry} ({team}) at {}, seed {}", axes.join(", "), job.seed),
