@@ -148,11 +148,11 @@ impl Turning {
 
     /// Turns onto the courses of a cell.
     ///
-    /// As the course changes, their end points move at the rate of the radius, in a direction that
-    /// rotates with the course. Their durations change at a rate that varies by less than 2.4. A
-    /// value between two of them deviates from the straight line by at most half of that times the
-    /// square of half the cell's angle. At the bow both rates change sign, and opposite to it the
-    /// end points jump.
+    /// Per radian of course, their end points move by one radius, in a direction that rotates with
+    /// the course. Their durations change at a rate that itself changes by less than 2.4 per
+    /// radian. So an intermediate value deviates from the straight line between two of them by at
+    /// most half of that rate of change times the square of half the cell's angle. At the bow both
+    /// rates change sign, and opposite to it the end points jump.
     #[inline(always)]
     pub(super) fn fan(&self, cell: &Cell) -> Fan {
         let first = self.to(cell.first);
