@@ -191,7 +191,7 @@ pub(super) struct MeanSpeed {
 }
 
 impl MeanSpeed {
-    /// Any speed at once. A power of two, so that nothing is rounded.
+    /// Any speed is reached at once. A power of two, so that nothing is rounded.
     const NONE: MeanSpeed = {
         let much = (1_u64 << 60) as f32;
         MeanSpeed {
@@ -212,7 +212,7 @@ impl MeanSpeed {
     }
 
     /// The mean speed for an ordered speed. If the change takes the fraction `y` of the time, the
-    /// mean change is `y - y^2 / 2` of the largest possible.
+    /// mean change is `y - y^2 / 2` times the largest possible change.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
         // Compute both before choosing: a choice between numbers in memory becomes a gather, which
