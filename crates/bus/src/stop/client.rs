@@ -451,7 +451,7 @@ fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
 
 impl Saying {
     /// The command for a gateway. If its boat is unknown: the fleet's E-stop or a stop of one boat,
-    /// but `None` for a disarm of the fleet.
+    /// but `None` for a fleet-wide disarm.
     fn command_to(&self, vehicle: Option<&str>) -> Option<GatewayCommand> {
         if self.is_of_fleet && self.command == StopCommand::EStop {
             return Some(GatewayCommand::Fleet(FleetCommand::EStop));
