@@ -369,8 +369,8 @@ impl Sums {
         // contacts do, and their points need no distance.
         bounded.forget();
         for ((_, field), clear) in self.fields.iter().zip(clear) {
-            // `clear` has the sectors in which the utility may be full so far: those whose upper
-            // bound is.
+            // So far, `clear` has the sectors in which the upper bound of the utility is full. Keep
+            // those in which every path has full utility.
             if let Field::Closest(ready) = field
                 && *clear != 0
             {
