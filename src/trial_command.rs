@@ -21,8 +21,9 @@ use trial::{Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 pub(crate) struct Args {
     /// Boat: a file, or the name of a boat in scenarios/boats
     boat: String,
-    /// Replays the commands in this CSV file. Columns: t_s, and either port and starboard (both in
-    /// _rad_s, _pct or _newton), or thrust_pct and rudder_pct, or speed_m_s and heading_deg
+    /// Replays the commands in this CSV file. Columns: t_s, and either port and starboard (both
+    /// with the suffix _rad_s, _pct or _newton), or thrust_pct and rudder_pct, or speed_m_s and
+    /// heading_deg
     #[arg(long, value_name = "FILE", value_parser = existing)]
     orders: Option<PathBuf>,
     /// Standard manoeuvre to perform

@@ -170,7 +170,7 @@ class Rig:
                     if not self.is_standing(boat):
                         return True
                 elif "fleet" in state:
-                    # A copy of a stop of the fleet arrived after the release.
+                    # A copy of a fleet-wide stop arrived after the release.
                     self.stops_after_release += 1
                     self.tell(SIM, "all", "release")
                     time.sleep(RELEASE_S)
@@ -195,7 +195,7 @@ class Rig:
                 release_fleet()
                 releases += 1
                 release_at_s = time.monotonic() + RELEASE_S
-        # A copy of a stop of the fleet that arrives after the release takes effect again.
+        # A copy of a fleet-wide stop that arrives after the release takes effect again.
         self.stops_after_release += releases > (len(boats) > 1)
 
     def tell(self, machine, *words):

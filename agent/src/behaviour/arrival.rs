@@ -4,7 +4,7 @@ use primitives::Ned;
 use primitives::angle::wrap_pi;
 use std::f64::consts::TAU;
 
-/// Increase over the closest distance at which a point recedes, m; a smaller one may be noise.
+/// How far beyond its closest distance a point must be to count as receding, m; less may be noise.
 const AWAY_M: f64 = 0.5;
 
 /// A point that the boat approaches. It is reached within the capture radius, or within the slip
@@ -14,7 +14,7 @@ const AWAY_M: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
     nearest_m: f64,
-    /// The bearing of the point and its accumulated rotation, rad.
+    /// The bearing of the point and its accumulated change, rad.
     bearing_rad: Option<f64>,
     turned_rad: f64,
     /// Distance at which the boat has circled a point, m: closer points count as reached.

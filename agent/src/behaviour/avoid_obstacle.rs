@@ -64,8 +64,8 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
                         at: *centre,
                         velocity: Ned::default(),
                     };
-                    // A circle is a stationary contact that touches at its radius, so the closed
-                    // form applies. Polygons have no closed form and need a table.
+                    // A circle counts as a stationary contact that own ship touches at this radius,
+                    // so the closed form applies. Polygons have no closed form and need a table.
                     let function =
                         keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s, None);
                     output.add_share(share, None, &function);

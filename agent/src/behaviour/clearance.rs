@@ -15,9 +15,9 @@ const ROUNDING_M: f32 = 0.01;
 
 /// Lowers the utilities of a table according to each candidate's clearance from the edges.
 ///
-/// A candidate's value is the fraction of `save_m` that it keeps: half for the least distance to an
-/// edge on the way, half for the distance at the end of the look-ahead. The worst edge counts. The
-/// fraction `x` yields `x + bend x (1 - x)` of each half.
+/// A candidate's value is the fraction of `save_m` that it keeps: half for the closest distance to
+/// an edge on the way, half for the distance at the end of the look-ahead. The worst edge counts.
+/// The fraction `x` yields `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -66,8 +66,8 @@ impl Kernel for Clearance<'_> {
 
 impl Clearance<'_> {
     fn seen(&self, (normal, inside_m): (Ned, f64)) -> Edge {
-        // Relative to the edge's outward normal, one formula serves all four edges, and the outward
-        // direction is a cosine.
+        // With angles from the edge's outward normal, one formula serves all four edges, and the
+        // outward component of a course is a cosine.
         let from_rad = wrap_pi(self.heading_rad - math::atan2(normal.east, normal.north));
         let (sin_from, cos_from) = math::sin_cos(from_rad);
         let start_m = (inside_m - self.handling.reaction_s * self.surge_m_s * cos_from) as f32;
@@ -86,7 +86,7 @@ impl Clearance<'_> {
     fn may_be_low(&self, courses: &Courses, turns: &Turns, edge: &Edge) -> bool {
         let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
         // Assumes the larger of the old speed and the top speed. Courses that lead away from an
-        // edge, or cannot reach it, are skipped 16 at a time: most of them, even near an edge.
+        // edge or cannot reach it (most courses, even near an edge) are skipped 16 at a time.
         let out_s =
             (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
         let mut may_be_low = false;
@@ -280,8 +280,8 @@ impl Outward {
 }
 
 /// A path on a course relative to an edge, as a function of the new speed: out to the farthest
-/// point of the turn, back to its end, and straight on. The speed changes from old to new within
-/// the boat's acceleration, but no faster than evenly on the way out.
+/// point of the turn, back to its end, and straight on. The speed changes from old to new as
+/// fast as the boat's acceleration allows, but on the way out no faster than linearly in time.
 #[derive(Clone, Copy)]
 struct Way {
     /// Distance inside the edge at the start of the turn, m.
@@ -299,7 +299,7 @@ struct Way {
 }
 
 impl Way {
-    /// The utility of the least distance to the edge and of the final distance.
+    /// The utility of the closest distance to the edge and of the final distance.
     #[inline(always)]
     fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;

@@ -14,14 +14,14 @@ use std::f64::consts::PI;
 const WELL_IN_M: f64 = 5.0;
 /// Additional distance from the edges, as seconds of the drift's standard deviation, because waves
 /// and gusts displace a boat and delay its turns. In a gale over a lake that deviation is 0.3 to
-/// 0.5 m/s. The farthest metres count little; otherwise a few centimetres would outweigh the boat's
-/// task, which has a twentieth of the weight.
+/// 0.5 m/s. The metres farthest from the edge count little; otherwise a few centimetres would
+/// outweigh the boat's task, which has a twentieth of the weight.
 const GUST_S: f64 = 36.0;
 /// Speed range from the recovery speed to zero utility, m/s: the boat returns as slowly as
 /// configured.
 const RECOVERY_BASE_M_S: f64 = 0.5;
 
-/// The side of the edge on which the boat counts as being.
+/// The side of the edge that the boat counts as being on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     In,
@@ -32,7 +32,7 @@ enum Side {
 pub(super) struct OpRegionBehaviour {
     task: OpRegion,
     side: Side,
-    /// When the boat crossed from the side on which it counts to the other side.
+    /// When the boat crossed to the side that it does not yet count as being on.
     crossed: Option<SimTime>,
     table: Table,
     instructions: Instructions,
@@ -105,8 +105,8 @@ impl BehaviourLogic for OpRegionBehaviour {
         }
         let lookahead_s = self.task.lookahead_s.value(situation);
         let save_m = self.task.save_m.value(situation);
-        // With the drift's deviation, boats left the field a quarter to a half less often in wind
-        // and waves.
+        // With this additional distance, boats left the field a quarter to a half less often in
+        // wind and waves.
         let gust_m = GUST_S * situation.motion.spread_m_s();
         let save_m = (save_m + gust_m).max(0.1);
         // Beyond this distance no course leads out within the look-ahead, so skip the table.
@@ -163,7 +163,8 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
-            // The current drift if drift is not estimated: a drift over the edge must always count.
+            // If drift is not estimated, the boat's present sway: drift across the edge must always
+            // count.
             drift: situation.motion.drift_now(&situation.own.nav),
             handling: situation.motion.handling(),
             margin_m,
@@ -178,7 +179,7 @@ impl Region {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// How far inside no candidate comes near an edge any more, m.
+    /// How far inside the region the boat must be so that no candidate comes near an edge, m.
     fn reach_m(&self, situation: &Situation, lookahead_s: f64, save_m: f64) -> f64 {
         let fastest_m_s = situation
             .model

@@ -1,7 +1,7 @@
-//! Outline: the boat's least distance to a polygon, for each course and speed.
+//! Outline: the boat's closest distance to a polygon, for each course and speed.
 //!
-//! After a decision the boat keeps its motion while it turns, then drives straight. A faster run
-//! covers a slower one, so its pass distance is the minimum over itself and all slower runs.
+//! After a decision the boat keeps its motion while it turns, then drives straight. A run at a
+//! higher speed contains those at lower speeds, so its pass distance is at most theirs.
 
 use super::steering::CPA_MIN_UTILITY;
 use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
@@ -116,8 +116,8 @@ impl Outline {
         let mut half_planes: Vec<HalfPlane> = Vec::new();
         for side in &sides {
             let unit = side.along.scaled(side.per_m2.sqrt());
-            // A half plane that contains all corners is a valid bound on either side of a side's
-            // line, even for a concave polygon.
+            // A half plane that contains all corners is a valid bound, on whichever side of the
+            // line through a side it lies, even for a concave polygon.
             for out in [1.0, -1.0] {
                 let normal = Ned {
                     north: out * unit.east,
@@ -150,7 +150,7 @@ impl Outline {
         }
     }
 
-    /// The least squared distance to any side, m².
+    /// The smallest squared distance to any side, m².
     #[inline(always)]
     fn squared_m2(&self, places: &Places) -> Lanes<f64> {
         let mut least = Lanes::splat(f64::INFINITY);
@@ -193,7 +193,7 @@ impl Outline {
                 let off_east = east - after_s * run_east;
                 let squared_m2 = off_north * off_north + off_east * off_east;
                 foot.after_s.0[i] = after_s;
-                // No run passes a corner behind it, however long it is.
+                // A run never passes a corner that is astern of it, however long it is.
                 foot.squared_m2.0[i] = if after_s >= 0.0 {
                     squared_m2
                 } else {
@@ -218,7 +218,7 @@ impl Outline {
         }
     }
 
-    /// The least squared distance of runs of this duration, or `before_m2` if that is less, m².
+    /// The smallest squared distance of runs of this duration, or `before_m2` if that is less, m².
     /// Points other than the corners and ends considered are farther away.
     #[inline(always)]
     fn passed_m2(&self, runs: &Runs, after_s: &Lanes<f64>, before_m2: &Lanes<f64>) -> Lanes<f64> {
@@ -364,8 +364,8 @@ impl Passes<'_> {
         duration_s
     }
 
-    /// How far a single half plane proves paths clear of the polygon: given the start of the path,
-    /// and the start and end points of the straight run.
+    /// How far along paths a single half plane proves them clear of the polygon, from the start of
+    /// each path and the start and end of its straight run.
     #[inline(always)]
     fn clear_of(&self, start: &Places, begin: &Places, end: &Places) -> Clear {
         let most_m = self.max_m + ROUNDING_M;
@@ -418,8 +418,8 @@ impl Passes<'_> {
                 .outline
                 .passed_m2(&runs, &Lanes::splat(run_m), before_m2);
             self.outline.utilities.push(self.worth(&least_m2));
-            // All corners are behind.
-            // A longer run changes nothing: from this speed on, all have the last utility.
+            // All corners are astern, and a longer run changes nothing: from this speed on, all
+            // have the last utility.
             if run_m >= last_m {
                 break;
             }

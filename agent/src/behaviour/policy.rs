@@ -7,7 +7,7 @@ use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;
 use scenario::strategy::Policy;
 
-/// Width of the fall from the proposed speed to zero utility, m/s.
+/// Width over which utility falls from the proposed speed to zero, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;
 
 #[derive(Clone)]

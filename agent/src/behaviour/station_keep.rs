@@ -7,7 +7,7 @@ use primitives::Ned;
 use scenario::strategy::StationKeep;
 use std::f64::consts::PI;
 
-/// Width of the fall from the peak of the speed to zero utility, m/s.
+/// Width over which utility falls from the speed peak to zero, m/s.
 const SPEED_BASE_M_S: f64 = 0.8;
 
 #[derive(Clone)]

@@ -6,17 +6,18 @@ use crate::situation::{MovingPoint, Situation};
 use primitives::{Ned, angle, math};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Width of the fall from the peak of a speed to zero utility, m/s: that of MOOS-IvP's waypoints.
+/// Width over which utility falls from a speed peak to zero, m/s: as for MOOS-IvP's waypoints.
 const SPEED_BASE_M_S: f64 = 1.6;
 /// Utility drop from the summit of a speed peak to its edge, so that the desired speed itself is
 /// best.
 const SPEED_SUMMIT_DELTA: f64 = 20.0;
 
-/// Utility of a closest point of approach at the least distance. Below that it falls to zero, so
-/// that a boat already too close comes no closer.
+/// Utility of a closest point of approach at exactly the minimum distance. Below that it falls to
+/// zero, so that a boat already too close comes no closer.
 pub(super) const CPA_MIN_UTILITY: f64 = 50.0;
 
-/// The boat's delay in following a decision. Its velocity is through the water, like decisions.
+/// The boat's delay in following a decision. Like the courses and speeds that are chosen,
+/// its `velocity` is relative to the water.
 pub(super) fn lag(situation: &Situation) -> Lag {
     let handling = situation.motion.handling();
     Lag {
@@ -30,7 +31,7 @@ pub(super) fn lag(situation: &Situation) -> Lag {
     }
 }
 
-/// Straight towards a place at a given speed, weighed equally: the function of MOOS-IvP's
+/// A course straight to a place and a given speed, with equal weights: the function of MOOS-IvP's
 /// waypoints.
 pub(super) fn toward(situation: &Situation, to: Ned, speed_m_s: f64) -> Objective<'static> {
     steer(situation, situation.at.bearing_rad(to), speed_m_s, 0.5)
@@ -67,9 +68,9 @@ pub(super) fn steer_heading(
     }
 }
 
-/// The maximum speed at which the boat can turn onto a place, m/s; a faster boat circles it. The
-/// circle that begins along the bow and passes through the place has a diameter of the distance
-/// over the sine of the bearing.
+/// The maximum speed at which the boat can reach a place by turning, m/s; a faster boat circles it.
+/// The circle tangent to the heading that passes through the place has a diameter of the distance
+/// divided by the sine of the relative bearing.
 pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
     let off_bow_rad =
         angle::wrap_pi(situation.at.bearing_rad(to) - situation.own.nav.psi_rad).abs();
@@ -78,7 +79,7 @@ pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
 }
 
 /// Keeps clear of the edge of a disc by at least `min_m`, ideally by `max_m`, for the duration of a
-/// leg; by more on a side other than `leave_to`.
+/// leg. On a side other than `leave_to`, if given, the same distance is worth less.
 pub(super) fn keep_clear(
     situation: &Situation,
     disc: MovingPoint,
@@ -89,15 +90,15 @@ pub(super) fn keep_clear(
 ) -> Objective<'static> {
     Objective::Closest(Closest {
         offset: disc.at - situation.at,
-        // Candidates are through the water, and the same water carries both boats: with the drift
-        // subtracted from the contact, all distances are exact.
+        // Candidate velocities are relative to the water, and the same water carries both boats:
+        // with the drift subtracted from the contact's velocity, all distances are exact.
         velocity: disc.velocity - situation.motion.drift(),
         horizon_s,
         min_m: min_m + radius_m,
         max_m: max_m.max(min_m) + radius_m,
-        // Zero utility where hulls touch, and half at the least distance. In MOOS-IvP, a boat that
-        // is already too close is indifferent to coming closer, so the smallest preference to
-        // pursue decides. With the slope, hulls touched a sixth as often in 150 games.
+        // Zero utility where hulls touch, and half at the minimum distance. In MOOS-IvP, a boat
+        // that is already too close is indifferent to coming closer, so even the slightest
+        // preference to pursue tips the balance. With the slope, hulls touched a sixth as often in 150 games.
         touch_m: radius_m,
         approach: Approach::Avoid {
             at_min: CPA_MIN_UTILITY,

@@ -10,7 +10,7 @@ use crate::ivp::{Choice, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Problem
 const NEAR_RAD: f64 = std::f64::consts::FRAC_PI_6;
 /// Maximum difference of a near speed from the last one, m/s.
 const NEAR_M_S: f64 = 0.75;
-/// Width of the fall from near to zero, rad or m/s: a step, apart from rounding.
+/// Width over which the bonus falls from near to zero, rad or m/s: a step, apart from rounding.
 const STEP: f64 = 1e-6;
 
 /// The bonus for candidates near the last decision.

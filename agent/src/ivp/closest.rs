@@ -2,7 +2,7 @@
 //!
 //! The contact is at `p` relative to own ship and moves with `c`; own ship is on course `d`
 //! (a unit vector) at speed `s`. The contact's relative velocity is `w = c - s d`, and its distance
-//! `|p + w t|` is least at
+//! `|p + w t|` is smallest at
 //!
 //! ```text
 //! t* = - p.w / w.w      clamped to 0 and the horizon,
@@ -12,18 +12,18 @@
 //!
 //! A boat does not turn or brake at once. With a [`Lag`], it keeps its motion for its reaction
 //! time, moves straight to the end of its [turn](Turning), and then follows the candidate at the
-//! mean [speed](MeanSpeed) until it meets the contact. The least distance of these three legs
-//! counts.
+//! mean [speed](MeanSpeed) until it meets the contact. The closest distance on any of these three
+//! legs counts.
 //!
 //! Two boats that avoid each other may choose the same side and collide. If a [`Side`] is given on
 //! which to leave each other, distances count less where the line of sight turns to the other side.
 //!
 //! Bounds over a cell: its first and last course at its slowest and fastest speed are four paths.
-//! At any time every other path of the cell is between them, except for the bend of the arcs
-//! between these courses. The distance at that time is convex in the position, so its largest value
-//! is at one of the four. The closest approach is no farther than that, which is an upper bound for
-//! the cell. Conversely, nothing on a leg is nearer than the least extent of the four along any
-//! direction.
+//! At any time every other path of the cell lies between them, except for the bend of the arcs
+//! between these courses. The distance is a convex function of the position, so at that time it is
+//! largest on one of the four. No closest point of approach is farther than that, which gives an
+//! upper bound for the cell. Conversely, along any direction, no point of a leg is nearer than the
+//! nearest point of the four.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
@@ -55,16 +55,16 @@ const OTHER_SIDE: f32 = 0.2;
 /// Whether to avoid or to approach the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
-    /// Farther is better: linear from 0 where they touch to `at_min` at the least distance, and
-    /// from there to 100 at the largest. MOOS-IvP has a step of 25 at the least distance and zero
-    /// below it, so a boat that is too close is indifferent to coming closer.
+    /// Farther is better: linear from 0 where the hulls touch to `at_min` at `min_m`, and from there to
+    /// 100 at `max_m`. MOOS-IvP has a step of 25 at the minimum distance and zero below it, so a
+    /// boat that is too close is indifferent to coming closer.
     Avoid {
-        /// Utility at the least distance, 0 to 100.
+        /// Utility at `min_m`, 0 to 100.
         at_min: f64,
         /// The side on which to leave the contact; `None` if it does not matter.
         leave_to: Option<Side>,
     },
-    /// Closer is better: 100 at or below the least distance, falling linearly to 0 at the largest.
+    /// Closer is better: 100 at or below `min_m`, falling linearly to 0 at `max_m`.
     Seek,
 }
 
@@ -77,7 +77,7 @@ pub struct Closest {
     pub velocity: Ned,
     /// How long course and speed are held after the turn, s.
     pub horizon_s: f64,
-    /// The least distance to keep, m.
+    /// The minimum distance to keep, m.
     pub min_m: f64,
     /// The distance beyond which utility no longer changes, m.
     pub max_m: f64,
@@ -115,7 +115,7 @@ impl Closest {
         }
         let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
-        // Least and largest distance may be equal, which would divide by zero.
+        // Minimum and maximum distance may be equal, and division by zero must be avoided.
         let slope = |rise: f64, width_m: f64| {
             if width_m > 0.0 {
                 (rise / width_m).min(STEP)
@@ -157,7 +157,7 @@ impl Closest {
             horizon: self.horizon_s as f32,
             min: self.min_m as f32,
             worth: if seek {
-                // Full utility up to the least distance.
+                // Full utility up to the minimum distance.
                 [100.0, -slope(100.0, width_m), f64::MIN, 1.0]
             } else {
                 let inner = slope(at_min, self.min_m - self.touch_m);
@@ -180,7 +180,7 @@ impl Closest {
 /// The function in single precision, m and s throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
-    /// The contact's position when a decision takes effect, and the square of the least distance
+    /// The contact's position when a decision takes effect, and the square of its smallest distance
     /// until then.
     start: Vector,
     least_before: f32,
@@ -189,8 +189,8 @@ pub(super) struct Ready {
     speed: f32,
     horizon: f32,
     min: f32,
-    /// The utility at the least distance; per metre beyond it; the distance at which they touch
-    /// (m); and the utility per metre between these two.
+    /// The utility at the minimum distance; the utility per metre beyond it; the distance at which
+    /// the hulls touch (m); and the utility per metre between these two distances.
     worth: [f32; 4],
     /// Whether to approach.
     pub(super) seek: bool,
@@ -207,8 +207,8 @@ pub(super) struct Ready {
     pub(super) group: usize,
 }
 
-/// The contact's relative motion on the paths of a cell: to its first and last course, each at its
-/// slowest and fastest speed, and one in the middle.
+/// The contact's relative motion on the paths of a cell: those to its first and last course, each
+/// at its slowest and fastest speed, and one in the middle.
 #[derive(Clone, Copy)]
 pub(super) struct Ways {
     /// The contact's position after the turns.
@@ -216,15 +216,15 @@ pub(super) struct Ways {
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// For the middle path: the contact's position after the turn, its motion until then and the
-    /// fraction of that motion until it was nearest, its motion afterwards, and the time when it is
-    /// nearest.
+    /// For the middle path: the contact's position after the turn, its motion during the turn and
+    /// the fraction of that motion after which it is nearest, its velocity after the turn, and the
+    /// time after the turn at which it is nearest.
     middle: Vector,
     past: Vector,
     share: f32,
     w: Vector,
     t: f32,
-    /// Maximum deviation of other paths from the polygon of these (m), and its growth rate (m/s).
+    /// Maximum distance of other paths outside the polygon of these (m), and its growth rate (m/s).
     off: f32,
     bend: f32,
 }
@@ -258,8 +258,8 @@ impl Ready {
             && self.mean_speed == other.mean_speed
     }
 
-    /// The effective least distance (m) on a course (a unit vector) at a speed after the turn to
-    /// that course.
+    /// The effective smallest distance (m) on a course (a unit vector) at a speed after the turn to
+    /// that course: smaller on the wrong side.
     #[inline(always)]
     pub(super) fn distance(&self, turn: &Turn, course: Vector, speed: f32) -> f32 {
         let at = self.after(turn);
@@ -307,7 +307,7 @@ impl Ready {
         }
     }
 
-    /// Upper bound of the least distances on the paths of a cell, m.
+    /// Upper bound of the smallest distances on the paths of a cell, m.
     #[inline(always)]
     pub(super) fn most(&self, ways: &Ways) -> f32 {
         let Ways { first, last, t, .. } = *ways;
@@ -319,7 +319,7 @@ impl Ready {
         smaller(smaller(straight, turning), self.least_before).sqrt() + ways.off + ways.bend * t
     }
 
-    /// Lower bound of the least distances on the paths of a cell, m.
+    /// Lower bound of the smallest distances on the paths of a cell, m.
     #[inline(always)]
     pub(super) fn least(&self, ways: &Ways) -> f32 {
         let nearest = (
@@ -341,7 +341,7 @@ impl Ready {
         let least = smaller(smaller(straight, turning), self.least_before.sqrt())
             - ways.off
             - ways.bend * self.horizon;
-        // As if all paths passed on the wrong side.
+        // Assume that all paths pass on the wrong side.
         smaller(least * self.other_side, least)
     }
 
@@ -364,7 +364,7 @@ impl Ready {
         )
     }
 
-    /// Utility of a distance, with no branch between approaching and avoiding.
+    /// Utility of a distance; approaching and avoiding share one formula, without a branch.
     #[inline(always)]
     pub(super) fn worth(&self, distance: f32) -> f32 {
         let [at_min, slope, touch, inner_slope] = self.worth;

@@ -17,7 +17,7 @@ pub const FUNCTIONS_MAX: usize = 256;
 // A checked program never exceeds this limit.
 const _: () = assert!(scenario::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
 
-/// The value of an absent place: below all others, but the sum of two does not overflow.
+/// The value of a place outside the grid: below all others, but the sum of two does not overflow.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
 
 /// From this number to twice its value, the numbers of an `f32` are the integers, so adding to it

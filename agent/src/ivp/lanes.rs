@@ -2,7 +2,7 @@
 
 /// Number of lanes.
 // Sixteen `f32` fill one AVX-512 register. With narrower registers the compiler uses two or four;
-// the bits are the same, because no lane depends on the register width.
+// the results are bitwise the same, because no lane depends on the register width.
 pub(crate) const LANES: usize = 16;
 
 /// Courses and speeds per tile side: a tile is `SIDE` courses by `SIDE` speeds, a sector `SIDE` by

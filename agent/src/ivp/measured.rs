@@ -113,7 +113,7 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// Computes the lower bound, whatever its utility.
+    /// Computes the lower bound of the distances, whether the contact is avoided or approached.
     #[inline(always)]
     pub(super) fn measure_least(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
         if self.turn(ready, cells) {
@@ -124,7 +124,7 @@ impl<'a> Bounded<'a> {
         }
     }
 
-    /// The bound with the greatest utility, once computed.
+    /// The bound with the higher utility, once computed.
     #[inline(always)]
     pub(super) fn best(&self, ready: &Ready) -> &Lanes<f32> {
         if ready.seek { &self.least } else { &self.most }
@@ -136,7 +136,7 @@ impl<'a> Bounded<'a> {
         self.group = None;
     }
 
-    /// Computes the bound with the greatest utility.
+    /// Computes the bound with the higher utility.
     #[inline(always)]
     pub(super) fn measure_best(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
         if !self.turn(ready, cells) {

@@ -38,13 +38,13 @@ pub struct Choice {
     pub evaluated: usize,
 }
 
-/// A grid and its cells, shared by all problems on equal grids, so that those of a large fleet stay
+/// A grid and its cells, shared by all problems on equal grids, so that a large fleet's grids fit
 /// in the processor's cache.
 #[derive(Debug)]
 struct Layout {
     grid: Grid,
     cells: Cells,
-    /// For later searches; as many as have run simultaneously.
+    /// Buffers for later searches; at most one for each search that has run at the same time.
     spare: Mutex<Vec<Bounds>>,
 }
 
@@ -90,7 +90,7 @@ impl Problem {
     }
 
     /// A problem on this grid, without functions, for this instruction set, which affects only
-    /// speed.
+    /// how fast it is solved.
     pub fn with_instructions(grid: Grid, instructions: Instructions) -> Problem {
         let layout = Layout::of(grid);
         Problem {

@@ -76,7 +76,7 @@ impl Kernel for Search<'_> {
     fn run(mut self) -> (Best, usize) {
         let formulas = self.sums.fields.len();
         self.bounds.parts.resize(formulas, Lanes::splat(0));
-        // Above the mark of finished places, so that none of them is taken, and below every sum.
+        // Above `DONE`, so that nothing finished is taken, and below every sum.
         let mut best = Best {
             value: DONE + 1,
             decision: Decision {
@@ -85,7 +85,7 @@ impl Kernel for Search<'_> {
             },
         };
         let mut evaluated = 0;
-        // First, so that its value excludes most sectors after evaluating few formulas.
+        // The guess comes first: its value excludes most sectors after evaluating few formulas.
         let guess = self.guess;
         let guess = guess.map(|Decision { course, speed }| (course / SIDE, speed / SIDE));
         if let Some(tile) = guess {
@@ -114,7 +114,7 @@ impl Kernel for Search<'_> {
     }
 }
 
-/// Removes the place of the largest number if that is at least `least`.
+/// Takes the place of the largest number, if that is at least `least`, and marks it as finished.
 #[inline(always)]
 fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
     let mut side_by_side = list[0];
@@ -124,7 +124,8 @@ fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
         }
     }
     let most = side_by_side.most();
-    // Cells with an equal sum stay: one may contain a point nearer to the boat's current motion.
+    // Cells whose bound equals the best sum are taken too: one may contain an equally good point
+    // nearer to the boat's current motion.
     if most < least {
         return None;
     }
@@ -368,7 +369,8 @@ impl Sums {
         // contacts do, and their points need no distance.
         bounded.forget();
         for ((_, field), clear) in self.fields.iter().zip(clear) {
-            // So far, the sectors in which it may: its greatest utility is full.
+            // So far, `clear` has the sectors in which the upper bound of the utility is full. Keep
+            // those in which every path has full utility.
             if let Field::Closest(ready) = field
                 && *clear != 0
             {
@@ -379,8 +381,8 @@ impl Sums {
         sums
     }
 
-    /// The weighted sums of a tile's points, in quanta. Stops when, by the formulas' bounds at this
-    /// place, none can reach `least`.
+    /// The weighted sums of a tile's points, in quanta. Stops when the formulas' bounds at this
+    /// place show that none can reach `least`.
     #[inline(always)]
     fn tile(
         &self,
@@ -433,8 +435,8 @@ impl Sums {
     }
 }
 
-/// Formulas with full utility throughout a sector: those that avoid a contact which comes near on
-/// no path in it.
+/// Formulas with full utility throughout a sector: those that avoid a contact to which no path in
+/// it comes near.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
     /// By formula, a bit for each sector of the group.
@@ -489,8 +491,7 @@ fn add_closing_bounds(
     }
 }
 
-/// A bit for each cell of a group in which no distance falls below the limit, computed from the
-/// least distances (m).
+/// A bit for each cell of a group in which this distance (m) has full utility.
 #[inline(always)]
 fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {
     let mut bits = 0_u32;
@@ -530,7 +531,7 @@ fn most_of_rows(
         let last = larger(c[i] + of[k + 2], d[i] + of[k + 3]);
         most.0[i] = larger(first, last) + of_speeds.0[i];
     }
-    // Of pairs, then of pairs of pairs.
+    // The largest of each pair, then of each pair of pairs.
     for i in 0..LANES {
         pairs.0[i] = larger(most.0[i], most.0[i ^ 1]);
     }

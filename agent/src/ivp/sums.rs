@@ -141,7 +141,7 @@ impl Kernel for AddSeparable<'_> {
         if !of_course.is_zero() {
             let peak = separable.course.on_courses(grid);
             for (i, sums) in sums.courses.iter_mut().enumerate() {
-                // Most functions have no width, which saves a division for each course.
+                // Most peaks have no `peak_width`, which saves a division for each course.
                 match peak.may_reach(grid, LANES * i) {
                     true if peak.has_width() => {
                         add_peak(sums, LANES * i, of_course, (&peak, true), grid);

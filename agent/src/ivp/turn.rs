@@ -148,11 +148,11 @@ impl Turning {
 
     /// Turns onto the courses of a cell.
     ///
-    /// As the course changes, their end points move at the rate of the radius, in a direction that
-    /// rotates with the course. Their durations change at a rate that varies by less than 2.4. A
-    /// value between two of them deviates from the straight line by at most half of that times the
-    /// square of half the cell's angle. At the bow both rates change sign, and opposite to it the
-    /// end points jump.
+    /// Per radian of course, their end points move by one radius, in a direction that rotates with
+    /// the course. Their durations change at a rate that itself changes by less than 2.4 per
+    /// radian. So an intermediate value deviates from the straight line between two of them by at
+    /// most half of that rate of change times the square of half the cell's angle. At the bow both
+    /// rates change sign, and opposite to it the end points jump.
     #[inline(always)]
     pub(super) fn fan(&self, cell: &Cell) -> Fan {
         let first = self.to(cell.first);
@@ -191,7 +191,7 @@ pub(super) struct MeanSpeed {
 }
 
 impl MeanSpeed {
-    /// Any speed at once. A power of two, so that nothing is rounded.
+    /// Any speed is reached at once. A power of two, so that nothing is rounded.
     const NONE: MeanSpeed = {
         let much = (1_u64 << 60) as f32;
         MeanSpeed {
@@ -212,7 +212,7 @@ impl MeanSpeed {
     }
 
     /// The mean speed for an ordered speed. If the change takes the fraction `y` of the time, the
-    /// mean change is `y - y^2 / 2` of the largest possible.
+    /// mean change is `y - y^2 / 2` times the largest possible change.
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
         // Compute both before choosing: a choice between numbers in memory becomes a gather, which

@@ -97,15 +97,15 @@ fn computes(node: &NodeProto, names: &BTreeSet<&str>) -> bool {
 /// The version of ONNX's own operator set.
 fn version(model: &ModelProto) -> Result<i64, NetworkError> {
     let own = model.opset_import.iter().find(|set| is_own(&set.domain));
-    let allowed = format!("version {} to {}", VERSIONS.start(), VERSIONS.end());
+    let allowed = format!("{} to {}", VERSIONS.start(), VERSIONS.end());
     match own {
         Some(set) if VERSIONS.contains(&set.version) => Ok(set.version),
         Some(set) => Err(NetworkError::model(
-            format!("version {} of the operators", set.version),
+            format!("opset version {}", set.version),
             allowed,
         )),
         None => Err(NetworkError::model(
-            "no version of the operators (opset_import)",
+            "no opset version (opset_import)",
             allowed,
         )),
     }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub struct Overrides {
     /// The sea file.
     pub sea: Option<PathBuf>,
-    /// Strategy files by team name; they also replace the strategies of single boats.
+    /// Strategy files by team name; they also replace the strategies of individual boats.
     pub strategies: BTreeMap<String, PathBuf>,
     /// Whether to exchange the strategies of the two teams; no boat of the game may have its own.
     #[serde(default)]

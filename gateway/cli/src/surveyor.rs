@@ -61,7 +61,7 @@ pub struct Args {
     /// Runs at the pace of the game; only for an emulated boat
     #[arg(long)]
     at_game_pace: bool,
-    /// How long the boat may send nothing before it is treated as lost, s
+    /// How long the boat may be silent before it is treated as lost, s
     #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
     silence_s: f64,
     /// How long to look for the game, s; operators can connect in the meantime [default: no limit]

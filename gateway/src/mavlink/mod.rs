@@ -40,8 +40,8 @@ impl Writer {
         }
     }
 
-    /// Appends a message that the dialect cannot express, from its number, the CRC byte of its
-    /// definition, and its payload.
+    /// Appends a message that the dialect cannot express, from its number, its CRC_EXTRA byte, and
+    /// its payload.
     pub fn write_raw(&mut self, id: u32, extra_crc: u8, payload: &[u8], out: &mut Vec<u8>) {
         // Version 2 omits trailing zeros, except for the first byte.
         let len = payload

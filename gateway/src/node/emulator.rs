@@ -44,7 +44,7 @@ pub struct EmulatorSettings {
 
 /// The settings of an emulated boat's front seat.
 pub enum FrontSeatSettings {
-    /// Imitates a Surveyor's.
+    /// Imitates a Surveyor's front seat.
     Surveyor {
         /// The address for the back seat.
         listen: LinkAddress,
@@ -61,7 +61,7 @@ pub enum FrontSeatSettings {
         /// Initial charge of the battery, as a fraction; `None` means full, without drain.
         charge: Option<f64>,
     },
-    /// Imitates an ArduPilot boat's.
+    /// Imitates an ArduPilot boat's front seat.
     ArduPilot {
         /// The address for the back seat.
         listen: LinkAddress,
@@ -100,7 +100,7 @@ struct Incoming {
 ///
 /// # Errors
 /// [`NodeError`] if there is no such game or boat, if the boat already has an agent, or if the
-/// network or a link cannot work.
+/// network or a link fails.
 pub fn emulate(
     settings: &EmulatorSettings,
     notify: &mut dyn FnMut(NodeEvent<'_>),

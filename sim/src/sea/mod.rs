@@ -199,7 +199,7 @@ impl SeaModel {
         )
     }
 
-    /// Computes waves with these instructions. The choice affects only speed.
+    /// Computes waves with these instructions, which affect only how fast it computes.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.waves = self
             .waves

@@ -290,7 +290,7 @@ impl WaveField {
     }
 
     /// The same field, computed with these instructions, as is everything built from it. The choice
-    /// affects only speed.
+    /// affects only how fast it is computed.
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField {
             instructions,

@@ -63,7 +63,7 @@ pub(super) struct CommonArgs {
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// How long the sim may send no picture before it is treated as lost, s
+    /// How long the sim may go without sending a picture before it is treated as lost, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     silence_s: f64,
     #[command(flatten)]

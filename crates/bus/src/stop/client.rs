@@ -40,7 +40,8 @@ struct Shared {
 }
 
 impl StopClient {
-    /// A client without paths. It repeats a stop until boats show it, for up to `limit`.
+    /// A client without paths. It repeats a stop until the boats report it, for up to
+    /// `limit`.
     ///
     /// # Errors
     /// If the system cannot start a thread.
@@ -326,7 +327,7 @@ impl Shared {
             });
             return;
         }
-        // On this path, a stop of the fleet cannot be sent to single boats.
+        // On this path, a fleet-wide stop cannot be sent to individual boats.
         let boats = saying
             .boats
             .iter()
@@ -414,8 +415,8 @@ impl Shared {
             for (vehicle, (state, age_ms)) in states {
                 orders.expect(vehicle);
                 if !state.is_empty() {
-                    // If the request arrived instantly, the sim had received the state this long
-                    // before.
+                    // Assume that the request arrived instantly: the sim had then received the
+                    // state `age_ms` before `asked`.
                     let as_of = asked
                         .checked_sub(Duration::from_millis(*age_ms))
                         .unwrap_or(asked);
@@ -449,8 +450,8 @@ fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
 }
 
 impl Saying {
-    /// The command for a boat's gateway; also for a gateway whose boat is unknown, if it is for the
-    /// fleet.
+    /// The command for a gateway. If its boat is unknown: the fleet's E-stop or a stop of one boat,
+    /// but `None` for a fleet-wide disarm.
     fn command_to(&self, vehicle: Option<&str>) -> Option<GatewayCommand> {
         if self.is_of_fleet && self.command == StopCommand::EStop {
             return Some(GatewayCommand::Fleet(FleetCommand::EStop));

@@ -163,7 +163,7 @@ fn bytes_that_are_no_model_are_refused() {
             b"\x3a\xff\xff\xff\xff\xff\xff\xff\xff\x7f",
             "a field of 9223372036854775807 bytes with 0 bytes remaining",
         ),
-        (b"\x3a\x00", "the model: found no version of the operators"),
+        (b"\x3a\x00", "the model: found no opset version"),
         (
             &too_long,
             "bytes of the file: found 67108865, expected at most 67108864",
@@ -180,13 +180,13 @@ fn models_that_cannot_be_evaluated_are_refused() {
     refuse_models(&[
         (
             |m| m.opset_import.clear(),
-            "the model: found no version of the operators (opset_import), expected version 7 to",
+            "the model: found no opset version (opset_import), expected 7 to",
         ),
         (
             |m| m.opset_import[0].version = 6,
-            "the model: found version 6 of the operators, expected version 7 to",
+            "the model: found opset version 6, expected 7 to",
         ),
-        (|m| m.opset_import[0].version = 99, "found version 99"),
+        (|m| m.opset_import[0].version = 99, "found opset version 99"),
         (
             |m| {
                 m.metadata_props = vec![

@@ -29,8 +29,8 @@ const INTERVAL_MIN_S: f64 = 0.025;
 /// Version 4.6.3, in ArduPilot's encoding.
 const VERSION: u32 = 0x0406_03FF;
 
-/// EKF_STATUS_REPORT of ArduPilot's own dialect: number, the CRC byte of its definition, and flags
-/// when healthy and without a fix.
+/// EKF_STATUS_REPORT of ArduPilot's own dialect: number, CRC_EXTRA byte, and flags when healthy and
+/// without a fix.
 const EKF_STATUS_REPORT: u32 = 193;
 const EKF_EXTRA_CRC: u8 = 71;
 const EKF_WELL: u16 = 831;

@@ -27,7 +27,7 @@ pub(super) fn waves(document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<W
     }
     let from_deg = raw.from_deg.or(wind.map(|wind| wind.from_deg));
     if from_deg.is_none() {
-        document.note_missing("waves.from_deg", "-360 to 360, or a wind");
+        document.note_missing("waves.from_deg", "-360 to 360, or a [wind] table");
     }
     let (hs_m, tp_s) = height_and_period(document, raw)?;
     let steepness = hs_m / peak_length_m(tp_s, depth_m);
@@ -103,11 +103,11 @@ fn height_and_period(document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<
         }
         _ => {
             let expected = match is_fully_grown {
-                true => "hs_m, or wind_m_s, or a wind",
-                false => "hs_m and tp_s, or fetch_km with wind_m_s or a wind",
+                true => "hs_m, wind_m_s or a [wind] table",
+                false => "hs_m and tp_s, or fetch_km with wind_m_s or a [wind] table",
             };
             if document.is_sound("waves") {
-                let message = format!("the size of the waves is missing, expected {expected}");
+                let message = format!("the wave height is missing, expected {expected}");
                 document.note_if_intact("waves", message);
             }
             None
