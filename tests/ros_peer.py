@@ -45,8 +45,8 @@ TOPICS = {
     **{f"/blue_1/{name}": kind for name, kind in MOTION.items()},
     **{f"/{boat}/truth/{name}": kind for boat in BOATS for name, kind in MOTION.items()},
 }
-SET_BOOL, TRIGGER = "std_srvs/srv/SetBool", "std_srvs/srv/Trigger"
-SERVICES = {"e_stop": SET_BOOL, "halt": SET_BOOL, "pause": SET_BOOL, "step": TRIGGER, "end": TRIGGER}
+SET_BOOL, TRIGGER, RESET = "std_srvs/srv/SetBool", "std_srvs/srv/Trigger", "squall_msgs/srv/Reset"
+SERVICES = {"e_stop": SET_BOOL, "halt": SET_BOOL, "pause": SET_BOOL, "step": TRIGGER, "end": TRIGGER, "reset": RESET}
 DONE = "bool success\nstring message"
 REQUESTS = {SET_BOOL: "bool data", TRIGGER: "uint8 structure_needs_at_least_one_member"}
 
@@ -237,6 +237,10 @@ def services(port, inboxes):
     inboxes["/squall/frame"].next(lambda frame: frame.stopped)
     check("its release answers", call(port, "e_stop", SET_BOOL, data=False).success)
     inboxes["/squall/frame"].next(lambda frame: not frame.stopped)
+    count = len(clock.messages)
+    check("reset answers", call(port, "reset", RESET, seed=7).success)
+    times = wait_for("a game from zero on", lambda: (t := [seconds(m.clock) for m in clock.messages[count:]]) and t[-1] > 2.0 and t)
+    check(f"after the reset, /clock runs from zero to {times[-1]:.1f} s", 0.0 in times and times[-1] < 10.0)
 
 
 def nonsense(types, port, publisher, classes, inboxes):
@@ -340,13 +344,17 @@ def play(squall, folder, children):
 
     subprocess.run([squall, "ros", "messages", "squall_msgs"], cwd=folder, check=True)
     types = Types(Path(folder) / "squall_msgs")
+    request, answer = (Path(folder) / "squall_msgs/srv/Reset.srv").read_text().split("\n---\n")
+    REQUESTS[RESET] = request
+    check("a reset answers like other services", answer.strip() == DONE)
     start("sim", "surveyor_2v2", "--pace", "realtime", "--game", GAME, "--listen", f"tcp/127.0.0.1:{squall_port}", *QUIET)
     where = ["--game", GAME, "--connect", f"tcp/127.0.0.1:{squall_port}"]
     bridge = start("ros", "bridge", "--vehicle", "blue_1", "--operator", "--router", f"tcp/127.0.0.1:{port}", *where)
     start("agent", "--vehicle", *BOATS[1:], *where)
     wait_for("the bridge's router", lambda: is_open(port))
     types_and_graph(types, port)
-    wanted = ["/clock", "/blue_1/odom", "/blue_1/truth/odom", "/blue_1/truth/fix", "/blue_1/imu", "/squall/frame", "/diagnostics"]
+    wanted = ["/clock", "/blue_1/odom", "/blue_1/truth/odom", "/blue_1/truth/velocity", "/blue_1/truth/fix", "/blue_1/imu", "/squall/frame",
+              "/diagnostics"]
     inboxes = {topic: Inbox(types, port, topic, TOPICS[topic]) for topic in wanted}
     motion(inboxes)
     session = ZenohSession.get_instance("127.0.0.1", port)
