@@ -200,20 +200,33 @@ def drive(publisher, classes, x, z, time_s):
         time.sleep(0.05)
 
 
-def driving(publisher, classes, truth):
+# Topics with a yaw rate, which is positive anticlockwise.
+YAW_RATES = {
+    "/blue_1/truth/odom": lambda message: message.twist.twist.angular.z,
+    "/blue_1/truth/velocity": lambda message: message.twist.angular.z,
+    "/blue_1/imu": lambda message: message.angular_velocity.z,
+}
+
+
+def driving(publisher, classes, inboxes):
     print("driving")
+    truth = inboxes["/blue_1/truth/odom"]
     drive(publisher, classes, 1.0, 0.0, 6.0)
     check(f"linear.x 1.0 m/s makes {truth.next().twist.twist.linear.x:.2f} m/s",
           abs(truth.messages[-1].twist.twist.linear.x - 1.0) < 0.25)
     for rate in (0.15, -0.15):
         drive(publisher, classes, 1.0, rate, 3.0)
-        begin = len(truth.messages)
+        counts = {topic: len(inboxes[topic].messages) for topic in YAW_RATES}
         drive(publisher, classes, 1.0, rate, 5.0)
+        begin = counts["/blue_1/truth/odom"]
         first, last = truth.messages[begin], truth.messages[-1]
         turned = sum(math.remainder(yaw(b.pose.pose.orientation) - yaw(a.pose.pose.orientation), 2 * math.pi)
                      for a, b in zip(truth.messages[begin:-1], truth.messages[begin + 1:]))
         got = turned / (seconds(last.header.stamp) - seconds(first.header.stamp))
         check(f"angular.z {rate} rad/s makes {got:.3f} rad/s anticlockwise", abs(got - rate) < 0.06)
+        for topic, read in YAW_RATES.items():
+            mean = statistics.mean(map(read, inboxes[topic].messages[counts[topic]:]))
+            check(f"{topic} measures {mean:.3f} rad/s", abs(mean - got) < 0.02)
     drive(publisher, classes, 1.5, 0.0, 4.0)
     before, ended = truth.next().twist.twist.linear.x, time.monotonic()
     wait_for("the boat holds after the last twist", lambda: truth.next().twist.twist.linear.x < 0.5 * before, 8.0)
@@ -402,7 +415,7 @@ def play(squall, folder, children):
     nonsense(types, port, publisher, classes, inboxes)
     latency(port, squall_port)
     bag(types, port, folder)
-    driving(publisher, classes, inboxes["/blue_1/truth/odom"])
+    driving(publisher, classes, inboxes)
     rate, gap_ms = stalled(port, squall_port)
     check(f"with a stalled ROS 2 node the sim sends {rate:.1f} frames a second, at most {gap_ms:.0f} ms apart", gap_ms < 1500)
     bridge.kill()
