@@ -6,6 +6,7 @@ Plays a game in real time, exposes it to ROS 2, and acts as the other side: list
 services, sends invalid messages, stalls, and kills the bridge. Exits with an error at the first failed check.
 """
 
+import json
 import math
 import os
 import signal
@@ -45,8 +46,8 @@ TOPICS = {
     **{f"/blue_1/{name}": kind for name, kind in MOTION.items()},
     **{f"/{boat}/truth/{name}": kind for boat in BOATS for name, kind in MOTION.items()},
 }
-SET_BOOL, TRIGGER = "std_srvs/srv/SetBool", "std_srvs/srv/Trigger"
-SERVICES = {"e_stop": SET_BOOL, "halt": SET_BOOL, "pause": SET_BOOL, "step": TRIGGER, "end": TRIGGER}
+SET_BOOL, TRIGGER, RESET = "std_srvs/srv/SetBool", "std_srvs/srv/Trigger", "squall_msgs/srv/Reset"
+SERVICES = {"e_stop": SET_BOOL, "halt": SET_BOOL, "pause": SET_BOOL, "step": TRIGGER, "end": TRIGGER, "reset": RESET}
 DONE = "bool success\nstring message"
 REQUESTS = {SET_BOOL: "bool data", TRIGGER: "uint8 structure_needs_at_least_one_member"}
 
@@ -199,20 +200,33 @@ def drive(publisher, classes, x, z, time_s):
         time.sleep(0.05)
 
 
-def driving(publisher, classes, truth):
+# Topics with a yaw rate, which is positive anticlockwise.
+YAW_RATES = {
+    "/blue_1/truth/odom": lambda message: message.twist.twist.angular.z,
+    "/blue_1/truth/velocity": lambda message: message.twist.angular.z,
+    "/blue_1/imu": lambda message: message.angular_velocity.z,
+}
+
+
+def driving(publisher, classes, inboxes):
     print("driving")
+    truth = inboxes["/blue_1/truth/odom"]
     drive(publisher, classes, 1.0, 0.0, 6.0)
     check(f"linear.x 1.0 m/s makes {truth.next().twist.twist.linear.x:.2f} m/s",
           abs(truth.messages[-1].twist.twist.linear.x - 1.0) < 0.25)
     for rate in (0.15, -0.15):
         drive(publisher, classes, 1.0, rate, 3.0)
-        begin = len(truth.messages)
+        counts = {topic: len(inboxes[topic].messages) for topic in YAW_RATES}
         drive(publisher, classes, 1.0, rate, 5.0)
+        begin = counts["/blue_1/truth/odom"]
         first, last = truth.messages[begin], truth.messages[-1]
         turned = sum(math.remainder(yaw(b.pose.pose.orientation) - yaw(a.pose.pose.orientation), 2 * math.pi)
                      for a, b in zip(truth.messages[begin:-1], truth.messages[begin + 1:]))
         got = turned / (seconds(last.header.stamp) - seconds(first.header.stamp))
         check(f"angular.z {rate} rad/s makes {got:.3f} rad/s anticlockwise", abs(got - rate) < 0.06)
+        for topic, read in YAW_RATES.items():
+            mean = statistics.mean(map(read, inboxes[topic].messages[counts[topic]:]))
+            check(f"{topic} measures {mean:.3f} rad/s", abs(mean - got) < 0.02)
     drive(publisher, classes, 1.5, 0.0, 4.0)
     before, ended = truth.next().twist.twist.linear.x, time.monotonic()
     wait_for("the boat holds after the last twist", lambda: truth.next().twist.twist.linear.x < 0.5 * before, 8.0)
@@ -237,6 +251,10 @@ def services(port, inboxes):
     inboxes["/squall/frame"].next(lambda frame: frame.stopped)
     check("its release answers", call(port, "e_stop", SET_BOOL, data=False).success)
     inboxes["/squall/frame"].next(lambda frame: not frame.stopped)
+    count = len(clock.messages)
+    check("reset answers", call(port, "reset", RESET, seed=7).success)
+    times = wait_for("a game from zero on", lambda: (t := [seconds(m.clock) for m in clock.messages[count:]]) and t[-1] > 2.0 and t)
+    check(f"after the reset, /clock runs from zero to {times[-1]:.1f} s", 0.0 in times and times[-1] < 10.0)
 
 
 def nonsense(types, port, publisher, classes, inboxes):
@@ -255,25 +273,58 @@ def nonsense(types, port, publisher, classes, inboxes):
               not [r for r in session.get(selector, payload=b"junk", timeout=0.3) if r.ok])
 
 
-def latency(port, squall_port):
-    """The delay that the bridge adds to a frame, beside a subscriber at the sim itself."""
-    print("latency")
+# Bare zenoh with as many links: a router that only forwards.
+RELAY = """
+import sys, time, zenoh
+config = zenoh.Config()
+for key, value in [("mode", '"router"'), ("scouting/multicast/enabled", "false"),
+                   ("connect/endpoints", f'["{sys.argv[1]}"]'), ("listen/endpoints", f'["{sys.argv[2]}"]')]:
+    config.insert_json5(key, value)
+session = zenoh.open(config)
+print("ready", flush=True)
+time.sleep(600)
+"""
+# Receives frames at the sim, behind the bridge and behind the relay, in a process that decodes nothing. Prints for each of some
+# seconds how much later than at the sim each frame arrived at the others, in ms.
+RECEIVER = """
+import json, os, sys, time, zenoh
+arrived = [{}, {}, {}]
+def receive(i, endpoint, key):
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
-    config.insert_json5("connect/endpoints", f'["tcp/127.0.0.1:{squall_port}"]')
-    arrived = [{}, {}]
-    note = lambda i: lambda s: arrived[i].setdefault(s.payload.to_bytes()[4:20], time.perf_counter())  # noqa: E731
-    with zenoh.open(config) as bare:
-        ros = ZenohSession.get_instance("127.0.0.1", port).session
-        subscribers = [bare.declare_subscriber(f"squall/{GAME}/frame", note(0)),
-                       ros.declare_subscriber("0/squall/frame/squall_msgs::msg::dds_::Frame_/*", note(1))]
-        time.sleep(15.0)
-        [subscriber.undeclare() for subscriber in subscribers]
-    added = sorted(1e3 * (arrived[1][key] - at) for key, at in arrived[0].items() if key in arrived[1])
-    p50, p99 = statistics.median(added), added[int(0.99 * len(added))]
-    print(f"  on top of bare zenoh: p50 {p50:.3f} ms, p99 {p99:.3f} ms, max {added[-1]:.3f} ms of {len(added)} frames")
-    check("no frame is lost", len(added) >= len(arrived[0]) - 2)
-    return p50, p99
+    config.insert_json5("connect/endpoints", f'["{endpoint}"]')
+    session = zenoh.open(config)
+    note = lambda sample: arrived[i].setdefault(sample.payload.to_bytes()[4:20], time.perf_counter())
+    return session, session.declare_subscriber(key, note)
+subscribed = [receive(i, *pair) for i, pair in enumerate(zip(sys.argv[1::2], sys.argv[2::2]))]
+time.sleep(0.5)
+for _ in range(6):
+    [frames.clear() for frames in arrived]
+    time.sleep(4.0)
+    frames = list(arrived[0].items())[1:-1]
+    print(json.dumps([[1e3 * (there[key] - at) for key, at in frames if key in there] for there in arrived]), flush=True)
+os._exit(0)
+"""
+
+
+def latency(port, squall_port):
+    """The delay that the bridge adds to a frame, beside that of a bare relay."""
+    print("latency")
+    sim, bridge, relay = (f"tcp/127.0.0.1:{number}" for number in (squall_port, port, free_port()))
+    with subprocess.Popen([sys.executable, "-c", RELAY, sim, relay], stdout=subprocess.PIPE, text=True) as forwarder:
+        forwarder.stdout.readline()
+        frame, ros_frame = f"squall/{GAME}/frame", "0/squall/frame/squall_msgs::msg::dds_::Frame_/*"
+        ends = [sim, frame, bridge, ros_frame, relay, frame]
+        lines = subprocess.run([sys.executable, "-c", RECEIVER, *ends], stdout=subprocess.PIPE, text=True, check=True).stdout
+        forwarder.kill()
+    windows = [json.loads(line) for line in lines.splitlines()]
+    check("no frame is lost", all(len(frames) == len(there) for frames, *others in windows for there in others))
+    p99 = lambda times: sorted(times)[int(0.99 * len(times))]  # noqa: E731
+    for i, name in ((1, "the bridge"), (2, "a bare relay")):
+        shown = ", ".join(f"{statistics.median(window[i]):.3f} and {p99(window[i]):.3f}" for window in windows)
+        print(f"  behind {name}, p50 and p99 in ms: {shown}")
+    added_ms = min(p99(window[1]) for window in windows) - min(p99(window[2]) for window in windows)
+    check(f"the bridge adds {added_ms:.3f} ms to bare zenoh, p99, at most 1 ms", added_ms <= 1.0)
 
 
 def bag(types, port, folder):
@@ -340,13 +391,17 @@ def play(squall, folder, children):
 
     subprocess.run([squall, "ros", "messages", "squall_msgs"], cwd=folder, check=True)
     types = Types(Path(folder) / "squall_msgs")
+    request, answer = (Path(folder) / "squall_msgs/srv/Reset.srv").read_text().split("\n---\n")
+    REQUESTS[RESET] = request
+    check("a reset answers like other services", answer.strip() == DONE)
     start("sim", "surveyor_2v2", "--pace", "realtime", "--game", GAME, "--listen", f"tcp/127.0.0.1:{squall_port}", *QUIET)
     where = ["--game", GAME, "--connect", f"tcp/127.0.0.1:{squall_port}"]
     bridge = start("ros", "bridge", "--vehicle", "blue_1", "--operator", "--router", f"tcp/127.0.0.1:{port}", *where)
     start("agent", "--vehicle", *BOATS[1:], *where)
     wait_for("the bridge's router", lambda: is_open(port))
     types_and_graph(types, port)
-    wanted = ["/clock", "/blue_1/odom", "/blue_1/truth/odom", "/blue_1/truth/fix", "/blue_1/imu", "/squall/frame", "/diagnostics"]
+    wanted = ["/clock", "/blue_1/odom", "/blue_1/truth/odom", "/blue_1/truth/velocity", "/blue_1/truth/fix", "/blue_1/imu", "/squall/frame",
+              "/diagnostics"]
     inboxes = {topic: Inbox(types, port, topic, TOPICS[topic]) for topic in wanted}
     motion(inboxes)
     session = ZenohSession.get_instance("127.0.0.1", port)
@@ -360,7 +415,7 @@ def play(squall, folder, children):
     nonsense(types, port, publisher, classes, inboxes)
     latency(port, squall_port)
     bag(types, port, folder)
-    driving(publisher, classes, inboxes["/blue_1/truth/odom"])
+    driving(publisher, classes, inboxes)
     rate, gap_ms = stalled(port, squall_port)
     check(f"with a stalled ROS 2 node the sim sends {rate:.1f} frames a second, at most {gap_ms:.0f} ms apart", gap_ms < 1500)
     bridge.kill()

@@ -40,8 +40,8 @@ struct BridgeArgs {
     /// Hides the true state from ROS 2: publishes no truth topics and no markers of boats
     #[arg(long)]
     no_truth: bool,
-    /// Lets every ROS 2 node pause, resume, step and end the game and release stops, using this
-    /// node's token
+    /// Lets every ROS 2 node pause, resume, step, reset and end the game and release stops, using
+    /// this node's token
     #[arg(long)]
     operator: bool,
     /// Endpoint of the ROS 2 router (rmw_zenohd); if none is running on this machine, the bridge

@@ -54,6 +54,7 @@ fn nobody_can_join_or_control_without_the_token() {
         Control::Pause,
         Control::Release,
         Control::GoOn,
+        Control::Reset(1),
         Control::Speed(Some(0.01)),
     ] {
         let controlled = |token| bus::control(&session(&sim, token), &sim.name(), control);

@@ -4,6 +4,7 @@ use crate::support::{
     FOUR, Process, Sim, agent, all_output, assert_a_game_each, free_endpoint, game_itself, own,
     printed, refused, result_of, squall, stdout, temporary, wait_until,
 };
+use messages::Control;
 use serde_json::{Value, json};
 use std::net::TcpListener;
 use std::os::unix::fs::DirBuilderExt;
@@ -35,6 +36,34 @@ fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
     }
     digests.dedup();
     assert_eq!(digests.len(), 3, "each is a different game");
+}
+
+#[test]
+fn a_game_that_was_reset_is_the_game_of_that_seed() {
+    // Its boats and sea are drawn by the seed, too.
+    let game = own("rough");
+    let here = result_of(&[&game, "--seed", "2", "--in-process"]);
+    let (sim, _agents) = Sim::start_with_agents("rough", &["--seed", "1", "--speed", "20"]);
+    sim.play_on(5.0);
+    bus::control(&sim.bus(), &sim.name(), Control::Reset(2)).expect("it can be reset");
+    let report = sim.wait_for_kind("done");
+    assert_eq!(report["outcome"]["digest"], here["digest"]);
+    assert_eq!(report["outcome"]["drawn"], here["drawn"]);
+}
+
+#[test]
+fn a_game_with_a_recording_or_real_boats_is_not_reset() {
+    let folder = temporary();
+    let file = folder.path().join("game.mcap").display().to_string();
+    for (game, args) in [
+        ("long", ["--record", file.as_str()]),
+        ("real_attacker", ["--pace", "realtime"]),
+    ] {
+        let sim = Sim::start(game, &args);
+        let refused = bus::control(&sim.bus(), &sim.name(), Control::Reset(2));
+        let reason = refused.expect_err("it goes on").to_string();
+        assert!(reason.contains("cannot be reset"), "{game}: {reason}");
+    }
 }
 
 #[test]

@@ -149,19 +149,19 @@ impl AgentLoop {
         self.refusals + self.talk.refusals() + self.policies.refusals()
     }
 
-    /// Decides until the game is over.
-    pub(super) fn play(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
+    /// Decides until the game is over. Returns whether it begins again, for other minds.
+    pub(super) fn play(&mut self, stop: &AtomicBool) -> Result<bool, NodeError> {
         while !stop.load(Ordering::Relaxed) {
             let mut decided = false;
             for (cell, unread) in self.unread.take(LOOK_AGAIN).into_iter().enumerate() {
                 let Some(unread) = unread else { continue };
                 self.sim.hears();
                 unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
-                if self.pictures[cell]
-                    .as_ref()
-                    .is_some_and(|picture| picture.over)
-                {
-                    return Ok(());
+                let is_under_way = self.runner.decided() > Some(0);
+                match &self.pictures[cell] {
+                    Some(picture) if picture.over => return Ok(false),
+                    Some(picture) if is_under_way && picture.stamp.seq == 0 => return Ok(true),
+                    _ => {}
                 }
                 // Use only the newest picture: with a queue, a slow agent would work on outdated
                 // ones. Events of skipped pictures carry over to the next one.
@@ -178,7 +178,7 @@ impl AgentLoop {
                 SimState::Dead(silent) => return Err(NodeError::SimGone(silent)),
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     /// Receives a picture.

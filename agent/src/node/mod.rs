@@ -47,29 +47,41 @@ pub enum News<'a> {
 /// [`NodeError`], including the loss of the sim.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
-    let mut report = |reason: &str| tell(News::Looking { reason });
-    let (bus, game, info) = search.game(&mut report, &settings.place, settings.game.as_ref())?;
-    let mut agent = AgentLoop::open(&bus, &game, &info, settings)?;
     let place = &settings.place;
-    let names = &settings.vehicles;
-    let joined = search.until(&mut report, || {
-        game_search::join(&bus, place, (&game, &info.scenario), Role::Agent, names)
-    })?;
-    agent.join(&bus, &game, &info.scenario, joined)?;
-    tell(News::Joined {
-        game: game.as_str(),
-    });
-    let played = agent.play(&settings.stop);
-    let name = |(vehicle, first, count): (VehicleId, String, u64)| {
-        let name = info.scenario.vehicles[vehicle.index()].name.clone();
-        (name, first, count)
+    let (bus, game, mut info) = search.game(&mut looking(tell), place, settings.game.as_ref())?;
+    let played = loop {
+        let mut agent = AgentLoop::open(&bus, &game, &info, settings)?;
+        let joined = search.until(&mut looking(tell), || {
+            let game = (&game, &info.scenario);
+            game_search::join(&bus, place, game, Role::Agent, &settings.vehicles)
+        })?;
+        agent.join(&bus, &game, &info.scenario, joined)?;
+        tell(News::Joined {
+            game: game.as_str(),
+        });
+        let played = agent.play(&settings.stop);
+        let name = |(vehicle, first, count): (VehicleId, String, u64)| {
+            let name = info.scenario.vehicles[vehicle.index()].name.clone();
+            (name, first, count)
+        };
+        tell(News::Left {
+            refused: agent.refusals(),
+            faults: agent.faults().map(name).collect(),
+        });
+        if !matches!(played, Ok(true)) {
+            break played.map(drop);
+        }
+        // The seed may have changed strategies and boats.
+        search = GameSearch::new(settings.wait, &settings.stop);
+        let described = || game_search::choose_game(&bus, Some(&game));
+        (_, info) = search.until(&mut looking(tell), described)?;
     };
-    tell(News::Left {
-        refused: agent.refusals(),
-        faults: agent.faults().map(name).collect(),
-    });
     // Closing the link tells the sim at once that the agent has left; then its boats hold from the
     // next decision on.
     bus.close();
     played
+}
+
+fn looking(tell: &mut dyn FnMut(News<'_>)) -> impl FnMut(&str) {
+    move |reason| tell(News::Looking { reason })
 }

@@ -292,7 +292,7 @@ fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result
     Ok(())
 }
 
-fn set(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
+pub(crate) fn set(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
     config
         .insert_json5(key, value)
         .map_err(|e| BusError::Setting {

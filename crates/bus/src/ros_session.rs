@@ -2,7 +2,7 @@
 //!
 //! No function waits for a ROS 2 node: a link that cannot accept a message at once loses it.
 
-use crate::error::reason;
+use crate::net::set;
 use crate::parcel::Parcel;
 use crate::session::{Declaration, Encoding, PendingQuery, Sender, Session};
 use crate::zenoh_session::{ZenohSender, ZenohSession, failed, open};
@@ -38,7 +38,19 @@ impl RosSession {
             connect: vec![endpoint.to_owned()],
             ..Net::default()
         };
-        match open(net.leaf()?, what.clone()) {
+        let open = |mut config: zenoh::Config| {
+            // A decision's messages follow each other closely. While one is being written, zenoh's
+            // sender waits up to two milliseconds for it; with this, less than one. From the sim to
+            // a subscriber of all topics the median is 0.5 ms in place of 0.7 ms. (Messages that
+            // are `express` overflow the queue of batches: most were lost.)
+            set(
+                &mut config,
+                "transport/link/tx/queue/batching/time_limit",
+                "0",
+            )?;
+            open(config, what.clone())
+        };
+        match open(net.leaf()?) {
             Ok(session) => {
                 if session
                     .who_is_alive(&topic::everyone_alive(), POLL)?
@@ -58,7 +70,7 @@ impl RosSession {
             }
             // A mesh of ROS 2 nodes needs one known router to find each other.
             Err(_) if is_loopback(endpoint) => Ok(RosSession {
-                session: open(net.ros_router(endpoint)?, what)?,
+                session: open(net.ros_router(endpoint)?)?,
                 is_router: true,
             }),
             Err(error) => Err(error),
@@ -138,13 +150,7 @@ impl Net {
             // Through gossip, nodes learn each other's addresses from the router.
             ("scouting/gossip/enabled", "true".to_owned()),
         ] {
-            config
-                .insert_json5(key, &value)
-                .map_err(|e| BusError::Setting {
-                    key: key.to_owned(),
-                    value,
-                    reason: reason(&e),
-                })?;
+            set(&mut config, key, &value)?;
         }
         Ok(config)
     }

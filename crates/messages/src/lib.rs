@@ -299,6 +299,8 @@ pub enum JoinReply {
 pub enum Control {
     /// Ends the game now.
     Stop,
+    /// Starts the game again with this seed.
+    Reset(u64),
     /// Pauses the game. Real boats hold in the meantime.
     Pause,
     /// Resumes a paused game.

@@ -291,7 +291,11 @@ mod tests {
         assert_eq!((stamp.sec, stamp.nanosec), (12, 250_000_000));
         // Ahead is (cos 30, sin 30) in north and east, starboard (-sin 30, cos 30).
         let (north, east) = (2.0 * 0.75_f64.sqrt() - 0.25, 1.0 + 0.5 * 0.75_f64.sqrt());
-        close(motion().velocity().twist.linear, [east, north, 0.0]);
+        let velocity = motion().velocity().twist;
+        close(velocity.linear, [east, north, 0.0]);
+        // A clockwise turn, to starboard, is negative about an axis that points up.
+        close(velocity.angular, [0.0, 0.0, -0.1]);
+        close(motion().imu("b").angular_velocity, [0.0, 0.0, -0.1]);
     }
 
     #[test]

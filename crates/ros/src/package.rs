@@ -1,5 +1,6 @@
 //! The package `squall_msgs` in the form that colcon builds.
 
+use crate::type_hash::definition;
 use messages::ros::DEFINITIONS;
 use std::io;
 use std::path::Path;
@@ -36,7 +37,7 @@ fn build_file() -> String {
         .collect();
     format!(
         "cmake_minimum_required(VERSION 3.8)\nproject(squall_msgs)\n\nfind_package(ament_cmake REQUIRED)\n\
-         find_package(rosidl_default_generators REQUIRED)\n\nrosidl_generate_interfaces(${{PROJECT_NAME}}\n{})\n\n\
+         find_package(rosidl_default_generators REQUIRED)\n\nrosidl_generate_interfaces(${{PROJECT_NAME}}\n{}  \"srv/Reset.srv\"\n)\n\n\
          ament_export_dependencies(rosidl_default_runtime)\nament_package()\n",
         files.concat()
     )
@@ -53,5 +54,13 @@ pub fn write(folder: &Path) -> io::Result<()> {
     for (name, text) in DEFINITIONS {
         std::fs::write(folder.join(format!("msg/{name}.msg")), text)?;
     }
-    Ok(())
+    let [request, response] = ["Request", "Response"].map(|part| {
+        let name = format!("squall_msgs/srv/Reset_{part}");
+        definition(&name).unwrap_or_default().trim()
+    });
+    std::fs::create_dir_all(folder.join("srv"))?;
+    std::fs::write(
+        folder.join("srv/Reset.srv"),
+        format!("{request}\n---\n{response}\n"),
+    )
 }

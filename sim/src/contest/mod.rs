@@ -141,6 +141,17 @@ impl Contest {
         &self.scenario
     }
 
+    /// The game of `scenario` with another seed. An E-stop or halt of this game stays in force.
+    ///
+    /// # Errors
+    /// As for [`Contest::new`].
+    pub fn restarted(&self, scenario: &Scenario, seed: u64) -> Result<Contest, NoStart> {
+        let mut next = Contest::new(scenario, seed)?;
+        next.e_stop(self.state.e_stopped);
+        next.halt(self.state.halted);
+        Ok(next)
+    }
+
     /// The world.
     pub fn world(&self) -> &World {
         &self.world

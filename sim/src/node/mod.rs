@@ -46,19 +46,25 @@ pub fn serve(
     }
     // Before the hub opens: a game whose boats do not fit is rejected before any node joins.
     let contest = Contest::new(scenario, seed)?;
-    let mut server = GameServer::open(contest, settings, recorder)?;
+    let mut server = GameServer::open(contest, scenario, settings, recorder)?;
     tell(ProgressMessage::Open {
         game: settings.game.as_str().to_owned(),
         endpoint: settings.net.local_endpoint().unwrap_or_default(),
     });
-    // Simulated time starts when all nodes are present: the start-up of programs is not part of a
-    // game.
-    server.wait_for_everybody(settings.join_limit, tell)?;
-    tell(ProgressMessage::Started);
-    let started = clock::now();
-    match settings.pace {
-        Pace::Lockstep => lockstep::play(&mut server, tell)?,
-        Pace::Realtime { .. } => realtime::play(&mut server, tell)?,
+    let mut started;
+    loop {
+        // Simulated time starts when all nodes are present: the start-up of programs is not
+        // part of a game.
+        server.wait_for_everybody(settings.join_limit, tell)?;
+        tell(ProgressMessage::Started);
+        started = clock::now();
+        match settings.pace {
+            Pace::Lockstep => lockstep::play(&mut server, tell)?,
+            Pace::Realtime { .. } => realtime::play(&mut server, tell)?,
+        }
+        if !server.restart() {
+            break;
+        }
     }
     let cut_short = !server.contest.is_over();
     let wall_s = clock::since(started).as_secs_f64();

@@ -25,6 +25,7 @@ use messages::{Frame, GameInfo, Message, Order, Picture, Role, Stamp, VehicleOrd
 use primitives::{SimTime, TeamId, VehicleId, codec};
 use recording::Entry;
 use rules::event::EventCursor;
+use scenario::Scenario;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -43,6 +44,10 @@ const SEND_END_AGAIN: Duration = Duration::from_millis(200);
 
 pub(super) struct GameServer<'w> {
     pub(super) contest: Contest,
+    /// The scenario before the values of a seed are drawn.
+    scenario: &'w Scenario,
+    /// The game to play instead of this one.
+    next: Option<Contest>,
     pub(super) pacing: Pacing,
     recorder: Option<&'w mut GameRecorder>,
     pub(super) agents: Membership,
@@ -99,6 +104,7 @@ impl<'w> GameServer<'w> {
     /// Opens the hub, so that nodes can join.
     pub(super) fn open(
         mut contest: Contest,
+        undrawn: &'w Scenario,
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
@@ -150,12 +156,9 @@ impl<'w> GameServer<'w> {
             .map(|v| scenario.vehicles[v.index()].name.clone())
             .collect();
         let stop_port = HubStopPort::open(&bus, &settings.net, game, &real)?;
-        let game_info = GameInfo {
-            version: primitives::VERSION.to_owned(),
-            pace: settings.pace.to_string(),
-            scenario: scenario.clone(),
-        };
         Ok(GameServer {
+            scenario: undrawn,
+            next: None,
             agents: Membership::new(scenario, Role::Agent),
             gateways: Membership::new(scenario, Role::Gateway),
             controls,
@@ -186,7 +189,7 @@ impl<'w> GameServer<'w> {
             recorded_topics,
             pacing: Pacing::new(speed, is_lockstep, !real.is_empty()),
             recorder,
-            game_info: serde_json::to_vec(&game_info).expect("a scenario is JSON"),
+            game_info: game_info(scenario, settings.pace),
             stop: Arc::clone(&settings.stop),
             refusals: Refusals::default(),
             heard: vec![Duration::ZERO; scenario.vehicles.len()],
@@ -199,6 +202,20 @@ impl<'w> GameServer<'w> {
             bus,
             contest,
         })
+    }
+
+    /// Replaces the game by the next one, if it was reset. Its agents have to join again.
+    pub(super) fn restart(&mut self) -> bool {
+        let Some(next) = self.next.take() else {
+            return false;
+        };
+        self.contest = next;
+        self.agents = Membership::new(self.contest.scenario(), Role::Agent);
+        self.game_info = game_info(self.contest.scenario(), self.pace);
+        (self.frame, self.shown) = (None, EventCursor::default());
+        self.reporter = Reporter::default();
+        self.overruns = 0;
+        true
     }
 
     /// Waits until every vehicle has an agent and every real boat has reported, up to the time
@@ -221,6 +238,11 @@ impl<'w> GameServer<'w> {
                 self.is_news = true;
             }
             self.send_run(Phase::Waiting, 0.0)?;
+            if self.asked.is_some() {
+                // Agents of a game that was reset join again when they see its first picture.
+                self.send_pictures()?;
+                self.send_frame()?;
+            }
             if told == (0, 0) || self.is_stopped() {
                 break;
             }
@@ -390,9 +412,9 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Whether the game should end early.
+    /// Whether the game should end early, for good or to be played again.
     pub(super) fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.next.is_some() || self.stop.load(Ordering::Relaxed)
     }
 
     /// All refusals so far.
@@ -565,4 +587,14 @@ impl<'w> GameServer<'w> {
         self.heard.fill(self.time.worked);
         Ok(())
     }
+}
+
+/// The reply to the query for the game's description.
+fn game_info(scenario: &Scenario, pace: Pace) -> Vec<u8> {
+    let info = GameInfo {
+        version: primitives::VERSION.to_owned(),
+        pace: pace.to_string(),
+        scenario: scenario.clone(),
+    };
+    serde_json::to_vec(&info).expect("a scenario is JSON")
 }

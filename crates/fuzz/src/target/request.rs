@@ -68,6 +68,7 @@ fn seeds() -> Vec<Vec<u8>> {
         Control::Halt,
         Control::Speed(Some(4.0)),
         Control::Speed(None),
+        Control::Reset(7),
         Control::Release,
     ];
     seeds.extend(controls.iter().flat_map(requests));

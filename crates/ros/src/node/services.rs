@@ -8,7 +8,6 @@ use messages::Control;
 use messages::refusal::{Refusal, Refusals};
 use messages::topic::GameName;
 use primitives::codec;
-use serde::Deserialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -20,8 +19,9 @@ const REQUESTS: usize = 16;
 
 const SET_BOOL: &str = "std_srvs/srv/SetBool";
 const TRIGGER: &str = "std_srvs/srv/Trigger";
-/// The services: name, type, and the commands for `true` and `false`. A trigger has only the first.
-const SERVICES: [(&str, &str, [Control; 2]); 5] = [
+const RESET: &str = "squall_msgs/srv/Reset";
+/// The services: name, type, and the commands for `true` and `false`. Others have only the first.
+const SERVICES: [(&str, &str, [Control; 2]); 6] = [
     (
         "/squall/e_stop",
         SET_BOOL,
@@ -31,12 +31,24 @@ const SERVICES: [(&str, &str, [Control; 2]); 5] = [
     ("/squall/pause", SET_BOOL, [Control::Pause, Control::Resume]),
     ("/squall/step", TRIGGER, [Control::Step, Control::Step]),
     ("/squall/end", TRIGGER, [Control::Stop, Control::Stop]),
+    (
+        "/squall/reset",
+        RESET,
+        [Control::Reset(0), Control::Reset(0)],
+    ),
 ];
 
-/// The request of `std_srvs/srv/SetBool`. A `Trigger` request is also one byte, which is ignored.
-#[derive(Deserialize)]
-struct Request {
-    data: u8,
+/// The command of a request to a service of this type, which has these commands.
+fn command(type_name: &str, [on, off]: [Control; 2], request: &[u8]) -> Option<Control> {
+    if type_name == RESET {
+        return codec::decode_plain(request).map(Control::Reset);
+    }
+    // The byte of a `Trigger` request is ignored.
+    match codec::decode_plain::<u8>(request)? {
+        0 if type_name == SET_BOOL => Some(off),
+        1 => Some(on),
+        _ => (type_name == TRIGGER).then_some(on),
+    }
 }
 
 /// A request in a queue.
@@ -71,14 +83,12 @@ pub(super) fn open(
             node,
             (service, type_name),
             move |request: Parcel, client| {
-                let asked = codec::decode_plain::<Request>(&request.bytes)
-                    .filter(|asked| asked.data <= 1 || type_name == TRIGGER);
-                let Some(asked) =
+                let asked = command(type_name, commands, &request.bytes);
+                let Some(control) =
                     asked.filter(|_| name::answer_attachment(&request.attachment, 0).is_some())
                 else {
                     return refusals.visit(|refusals| refusals.count(Refusal::Garbage));
                 };
-                let control = commands[usize::from(asked.data == 0)];
                 let queue = if control.stops() { &stops } else { &others };
                 if !queue.offer(Asked {
                     control,

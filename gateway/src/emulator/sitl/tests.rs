@@ -158,9 +158,6 @@ fn datagrams_of_the_real_firmware_are_read() {
     let under_way =
         "1a48b004f25f01009d060000b2060000000000000000000000000000000000000000000000000000";
     for (hex, step, port_us, starboard_us) in [(first, 0, 0, 0), (under_way, 90_098, 1693, 1714)] {
-        let byte =
-            |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal digits");
-        let datagram: Vec<u8> = (0..hex.len()).step_by(2).map(byte).collect();
         let mut pulses_us = [0; CHANNELS];
         pulses_us[..16].copy_from_slice(&pulses(port_us, starboard_us));
         let want = Outputs {
@@ -168,8 +165,75 @@ fn datagrams_of_the_real_firmware_are_read() {
             step,
             pulses_us,
         };
-        assert_eq!(Outputs::parse(&datagram), Some(want));
+        assert_eq!(Outputs::parse(&bytes(hex)), Some(want));
     }
+}
+
+fn bytes(hex: &str) -> Vec<u8> {
+    let byte = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).expect("hexadecimal digits");
+    (0..hex.len()).step_by(2).map(byte).collect()
+}
+
+#[test]
+fn the_real_firmware_gets_the_replies_that_it_accepted() {
+    let mut sitl = Sitl::new(SERVOS);
+    let (mut step, mut replies) = (None, 0);
+    for line in include_str!("exchange.txt").lines() {
+        let (kind, rest) = line.split_once(' ').expect("a kind");
+        let numbers: Vec<f64> = rest.split(' ').map_while(|n| n.parse().ok()).collect();
+        match kind {
+            "clock" => {
+                let [now, zero] = [0, 1].map(|i| SimTime(numbers[i] as i64));
+                sitl.clock = Some((now, zero));
+            }
+            "frame" => {
+                let nav = Nav {
+                    north_m: numbers[1],
+                    east_m: numbers[2],
+                    psi_rad: numbers[3],
+                    surge_m_s: numbers[4],
+                    sway_m_s: numbers[5],
+                    yaw_rate_rad_s: numbers[6],
+                };
+                let truth = VehicleTruth {
+                    nav,
+                    heave_m: numbers[7],
+                    roll_rad: numbers[8],
+                    pitch_rad: numbers[9],
+                    ..VehicleTruth::default()
+                };
+                sitl.observe(SimTime(numbers[0] as i64), &truth);
+            }
+            "in" => {
+                let outputs = Outputs::parse(&bytes(rest)).expect("servo outputs");
+                assert!(step.is_none_or(|before| outputs.step == before + 1));
+                step = Some(outputs.step);
+                // Restarts, as a first datagram, would set the clock to zero.
+                sitl.outputs = Some((outputs, SimTime::ZERO));
+                sitl.receive(&bytes(rest));
+            }
+            "out" => {
+                let reply = sitl.reply().expect("it is due");
+                assert_eq!(timestamp_s(&reply), timestamp_s(rest));
+                for (section, key) in [
+                    ("imu", "gyro"),
+                    ("imu", "accel_body"),
+                    ("", "position"),
+                    ("", "attitude"),
+                    ("", "velocity"),
+                ] {
+                    near(
+                        triple(&reply, section, key),
+                        triple(rest, section, key),
+                        1e-9,
+                    );
+                }
+                replies += 1;
+            }
+            _ => assert_eq!(kind, "#"),
+        }
+    }
+    assert_eq!(replies, 14);
 }
 
 #[test]

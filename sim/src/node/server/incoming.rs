@@ -279,6 +279,18 @@ impl GameServer<'_> {
         query.answer(token::answer(&reply));
     }
 
+    fn reset(&mut self, seed: u64) -> ControlReply {
+        if self.recorder.is_some() || !self.external_orders.is_empty() {
+            return Err(
+                "a game with a recording or real boats cannot be reset: start another one"
+                    .to_owned(),
+            );
+        }
+        let next = self.contest.restarted(self.scenario, seed);
+        self.next = Some(next.map_err(|e| e.to_string())?);
+        Ok(())
+    }
+
     fn control(&mut self, control: Control) -> ControlReply {
         let mut reply = Ok(());
         match control {
@@ -289,6 +301,7 @@ impl GameServer<'_> {
                 // If the session has closed, the next picture detects it.
                 drop(self.released.send_json(b"true".to_vec()));
             }
+            Control::Reset(seed) => reply = self.reset(seed),
             Control::Halt => self.contest.halt(true),
             Control::GoOn => self.contest.halt(false),
             pacing if self.pacing.change(pacing) => {}
