@@ -208,7 +208,7 @@ fn table(page: &mut String, about: &Value, wanted: impl Fn(&str, &Value) -> bool
     if first.is_empty() && rest.is_empty() {
         return;
     }
-    page.push_str("\n| key | | |\n|---|---|---|\n");
+    page.push_str("\n| key |||\n|---|---|---|\n");
     for (key, about) in first.into_iter().chain(rest) {
         let text = description(about);
         let (meaning, described) = text.split_once("Default: ").unwrap_or((&text, ""));
