@@ -182,6 +182,30 @@ fn every_request_of_a_ground_station_gets_its_reply() {
     }
 }
 
+#[test]
+fn the_old_requests_for_fences_and_rally_points_get_a_reply() {
+    // FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT, RALLY_FETCH_POINT: number, CRC_EXTRA, length and
+    // place of the target system, as in pymavlink's ardupilotmega.
+    for (id, extra_crc, len, target_at) in [
+        (160, 78, 12, 8),
+        (161, 68, 3, 0),
+        (175, 138, 19, 14),
+        (176, 234, 3, 0),
+    ] {
+        let said = |target: u8| {
+            let mut payload = vec![0; len];
+            payload[target_at] = target;
+            let heard = Station::new().reply_to_bytes(id, extra_crc, &payload);
+            let want = format!("message {id} is not supported");
+            heard.iter().any(|message| {
+                matches!(message, MavMessage::STATUSTEXT(text) if text.text.to_str() == Ok(&want))
+            })
+        };
+        assert!(said(1), "{id}");
+        assert!(!said(9), "{id} for another system");
+    }
+}
+
 /// A command with its first parameters, and its result in HOLD, disarmed.
 const RESULTS: [(u16, [f32; 2], u8); 18] = [
     (60_000, [0.0; 2], 3),

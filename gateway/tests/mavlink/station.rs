@@ -150,15 +150,25 @@ impl Station {
         payload.extend(command.to_le_bytes());
         payload.extend([self.target, self.component, 0, 0, 0]);
         let (id, extra_crc) = if is_long { (76, 152) } else { (75, 158) };
-        let mut bytes = vec![];
-        self.writer.write_raw(id, extra_crc, &payload, &mut bytes);
         self.acks.clear();
-        self.ardupilot.receive(self.now, &bytes);
-        self.heard = self.run(0.9);
+        self.heard = self.reply_to_bytes(id, extra_crc, &payload);
         self.acks
             .iter()
             .find(|(known, _)| *known == command)
             .map(|(_, result)| *result)
+    }
+
+    /// The messages within 0.9 s of a message outside the dialect.
+    pub(crate) fn reply_to_bytes(
+        &mut self,
+        id: u32,
+        extra_crc: u8,
+        payload: &[u8],
+    ) -> Vec<MavMessage> {
+        let mut bytes = vec![];
+        self.writer.write_raw(id, extra_crc, payload, &mut bytes);
+        self.ardupilot.receive(self.now, &bytes);
+        self.run(0.9)
     }
 
     /// The item that a boat requests.

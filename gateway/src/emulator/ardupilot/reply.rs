@@ -19,7 +19,7 @@ const NAK: u8 = 129;
 const UNKNOWN_COMMAND: u8 = 7;
 /// The offset of the target system, by number of the message, for messages with enumerations; the
 /// target component follows it.
-const TARGET_AT: [(u32, usize); 12] = [
+const TARGET_AT: [(u32, usize); 16] = [
     (23, 4),
     (39, 32),
     (40, 2),
@@ -32,6 +32,10 @@ const TARGET_AT: [(u32, usize); 12] = [
     (76, 30),
     (84, 50),
     (86, 50),
+    (160, 8),
+    (161, 0),
+    (175, 14),
+    (176, 0),
 ];
 
 impl ArduPilot {
@@ -100,6 +104,11 @@ impl ArduPilot {
             40 | 43 | 44 | 45 | 51 => {
                 self.send(&ack(from, MavMissionResult::MAV_MISSION_UNSUPPORTED))
             }
+            160 | 161 | 175 | 176 => self.complain(
+                now,
+                message.id,
+                &format!("message {} is not supported", message.id),
+            ),
             id => self.complain(now, id, &format!("message {id} has an unknown value")),
         }
     }
