@@ -19,6 +19,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+/// First pictures of each team that may arrive after later ones: resent copies that the network
+/// delayed. A game that was reset repeats them until its agents have joined again.
+const FIRST_PICTURES_LATE: usize = 2;
 /// Interval at which an agent without incoming pictures checks whether the sim is alive.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// In lockstep, teammates' messages arrive before the picture unless hubs on the way reorder them
@@ -32,6 +35,8 @@ const EVENTS_MAX: usize = 1024;
 /// The minds and their connections during a game.
 pub(super) struct AgentLoop {
     runner: MindRunner,
+    /// Number of first pictures of a game in a row, after decisions on later ones.
+    first_pictures: usize,
     talk: Talk,
     policies: PolicyInbox,
     /// Opened after joining: an agent that is waiting for a boat must not answer for the agent that
@@ -108,6 +113,7 @@ impl AgentLoop {
             teams,
             _declarations: declarations,
             runner,
+            first_pictures: 0,
             ticket: 0,
             pictures: vec![None; scenario.teams.len()],
             refusals: Refusals::default(),
@@ -157,11 +163,14 @@ impl AgentLoop {
                 let Some(unread) = unread else { continue };
                 self.sim.hears();
                 unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
-                let is_under_way = self.runner.decided() > Some(0);
-                match &self.pictures[cell] {
-                    Some(picture) if picture.over => return Ok(false),
-                    Some(picture) if is_under_way && picture.stamp.seq == 0 => return Ok(true),
-                    _ => {}
+                if self.pictures[cell]
+                    .as_ref()
+                    .is_some_and(|picture| picture.over)
+                {
+                    return Ok(false);
+                }
+                if self.first_pictures > FIRST_PICTURES_LATE * self.teams.len() {
+                    return Ok(true);
                 }
                 // Use only the newest picture: with a queue, a slow agent would work on outdated
                 // ones. Events of skipped pictures carry over to the next one.
@@ -193,6 +202,11 @@ impl AgentLoop {
             // Damaged in transit; the sim will send it again.
             Err(_) => return Ok(()),
         };
+        if picture.stamp.seq == 0 && self.runner.decided() > Some(0) {
+            self.first_pictures += 1;
+            return Ok(());
+        }
+        self.first_pictures = 0;
         self.refusals
             .add(Refusal::BadNumber, picture.remove_bad_numbers());
         let before = self.pictures[cell].take();
