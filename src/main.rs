@@ -91,7 +91,7 @@ enum Command {
         after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --csv events\n  squall log --compare strategy_4_vs_3 surveyor_2v2\n  squall log --turning-points --futures 50"
     )]
     Log(log_command::Args),
-    /// Plays futures of a recorded game with other strategies or in another sea.
+    /// Plays futures of a recorded game with changed strategies or sea.
     #[command(
         after_help = "Examples:\n  squall whatif --at 60 --blue strategy_5 --futures 20\n  squall whatif strategy_4_vs_3 --at 60 --vehicle red_1=learned --futures 20 --record future.mcap"
     )]

@@ -164,7 +164,7 @@ fn a_client_without_a_certificate_gets_no_session() {
         &FOUR[..1],
     )
     .refusal();
-    assert!(refused.contains("another authority"), "{refused}");
+    assert!(refused.contains("different authority"), "{refused}");
     let elsewhere = sim.endpoint.replace("127.0.0.1", "localhost");
     let refused = agent(&elsewhere, &sim, &own.path().join("team-blue"), &FOUR[..1]).refusal();
     assert!(refused.contains("--host localhost"), "{refused}");

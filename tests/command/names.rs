@@ -87,7 +87,7 @@ fn a_model_plays_like_the_strategy_that_uses_it() {
         );
     }
     // The strategy beside a model wins, as a training writes it.
-    let strategy = "base = \"strategy_4\"\n";
+    let strategy = "base = \"scenarios/strategies/strategy_4.toml\"\n";
     std::fs::write(dir.path().join("trained_1.toml"), strategy).unwrap();
     assert_eq!(digest("trained_1.onnx"), digest("strategy_4"));
 }

@@ -128,16 +128,18 @@ fn a_training_that_stops_within_an_update_says_where_it_continues() {
     // An update of half a million samples.
     std::fs::write(&file, text.replace("steps = 32", "steps = 65536")).unwrap();
     let mut process = command(&dir, &["train", "short.toml", "--out", "one"])
+        .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut error = BufReader::new(process.stderr.take().unwrap());
+    let mut output = BufReader::new(process.stdout.take().unwrap());
     let mut said = String::new();
-    while !said.contains("model of") && error.read_line(&mut said).unwrap() > 0 {}
+    while !said.contains("model of") && output.read_line(&mut said).unwrap() > 0 {}
     let killed = Command::new("kill")
         .args(["-INT", &process.id().to_string()])
         .status();
     assert!(killed.unwrap().success());
+    let mut error = process.stderr.take().unwrap();
     error.read_to_string(&mut said).unwrap();
     assert_eq!(process.wait().unwrap().code(), Some(130), "{said}");
     assert!(

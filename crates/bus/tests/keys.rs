@@ -99,7 +99,7 @@ fn whose_keys_do_not_fit_is_told_why() {
     );
     let text = refused(&endpoint, bundle(&foreign, "team-blue"));
     assert!(
-        text.contains("another authority") && text.contains(endpoint.trim_start_matches("tcp/")),
+        text.contains("different authority") && text.contains(endpoint.trim_start_matches("tcp/")),
         "{text}"
     );
     assert!(
