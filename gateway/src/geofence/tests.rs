@@ -335,8 +335,8 @@ fn a_geofence_that_does_not_go_with_the_game_is_refused() {
             vec![square(80.0, 40.0, 5.0), square(80.0, 400.0, 5.0)],
             "keep_out 1 (the first is 0) lies outside",
         ),
-        (all(), vec![start(3.0)], "starts outside"),
-        (Some(square(1000.0, 40.0, 200.0)), vec![], "starts outside"),
+        (all(), vec![start(3.0)], "must start inside"),
+        (Some(square(1000.0, 40.0, 200.0)), vec![], "must start inside"),
     ] {
         let area = GeofenceArea::new(
             &scenario.field,
