@@ -90,7 +90,9 @@ fn check(bytes: &[u8]) {
 
 fn replay_of(recording: Recording) -> ReplayView {
     ReplayView::new(
+        None,
         Arc::new(Recorded::new(Arc::new(recording), "fuzz.mcap".to_owned())),
+        None,
         None,
     )
 }
