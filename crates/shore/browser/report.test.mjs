@@ -231,7 +231,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   assert(!(await sight.page.isVisible('#games')));
   const listed = () => sight.get(() => [...document.querySelectorAll('#games-table tbody tr')].map((row) => [...row.children].map((each) => each.textContent.trim())));
   const result = ({ score, opponent_score }) => (score === opponent_score ? 'drawn' : Number(score) > Number(opponent_score) ? 'won' : 'lost');
-  const rows = (of) => of.map((game) => ['Watch', game.entry, game.side, game.seed, `${game.score} : ${game.opponent_score}`, result(game)]);
+  const rows = (of) => of.map((game) => ['Watch', game.entry.replaceAll('_', ' '), game.side, game.seed, `${game.score} : ${game.opponent_score}`, result(game)]);
   const own = games.filter(({ point }) => point === '1');
   assert.equal(own.length, 8);
   await sight.press('button[aria-label="List the games of point 1"]');
