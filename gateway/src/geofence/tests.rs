@@ -336,7 +336,11 @@ fn a_geofence_that_does_not_go_with_the_game_is_refused() {
             "keep_out 1 (the first is 0) lies outside",
         ),
         (all(), vec![start(3.0)], "must start inside"),
-        (Some(square(1000.0, 40.0, 200.0)), vec![], "must start inside"),
+        (
+            Some(square(1000.0, 40.0, 200.0)),
+            vec![],
+            "must start inside",
+        ),
     ] {
         let area = GeofenceArea::new(
             &scenario.field,
