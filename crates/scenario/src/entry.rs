@@ -51,8 +51,7 @@ pub fn is_strategy_path(path: &Path) -> bool {
 }
 
 /// The content of the strategy that plays the model in `FILE.onnx`. A model that chooses options
-/// plays the built-in
-/// strategy with these options.
+/// plays the built-in strategy with these options.
 fn policy_strategy(path: &Path) -> Option<String> {
     let model = path
         .extension()

@@ -221,8 +221,11 @@ impl Viewer for PageViewer {
             PageRequest::Step { .. } | PageRequest::Seek { .. } => {
                 Err("a running game cannot be rewound".to_owned())
             }
-            PageRequest::Curves { .. } | PageRequest::WhatIf { .. } => {
+            PageRequest::Curves { .. } => {
                 Err("curves need a recording: this game is still running".to_owned())
+            }
+            PageRequest::WhatIf { .. } => {
+                Err("futures need a recording: this game is still running".to_owned())
             }
         }
     }
