@@ -138,13 +138,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     })
 }
 
-/// A recorded game, up to its end.
-pub(crate) fn past(recording: &Recording) -> Result<Past> {
+/// Checks that a recorded game can be continued.
+pub(crate) fn check(recording: &Recording) -> Result<()> {
     if recording.header().info.pace == recording::alog::PACE {
         bail!("MOOS logs do not contain the inputs of a game");
     }
+    recording.scenario().has_no_real_boats()?;
+    Ok(())
+}
+
+/// A recorded game, up to its end.
+pub(crate) fn past(recording: &Recording) -> Result<Past> {
+    check(recording)?;
     let scenario = recording.scenario().clone();
-    scenario.has_no_real_boats()?;
     let mut inputs = vec![];
     let mut until = SimTime::ZERO;
     for message in recording

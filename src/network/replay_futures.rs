@@ -1,7 +1,7 @@
 //! The futures of a replay: what would have happened with other strategies or in another sea.
 
 use crate::scenario_files;
-use crate::whatif_command::{changes, past_at, rows};
+use crate::whatif_command::{changes, check, past_at, rows};
 use experiment::whatif::{self, Fan, Future};
 use recording::Recording;
 use scenario::Kind;
@@ -26,9 +26,7 @@ pub(super) struct ReplayFutures {
 impl ReplayFutures {
     /// `None` if the game cannot be continued.
     pub(super) fn new(recording: &Arc<Recording>) -> Option<ReplayFutures> {
-        let is_of_squall = recording.header().info.pace != recording::alog::PACE;
-        let is_simulated = recording.scenario().has_no_real_boats().is_ok();
-        (is_of_squall && is_simulated).then(|| ReplayFutures {
+        check(recording).ok().map(|()| ReplayFutures {
             recording: Arc::clone(recording),
             strategies: scenario_files::all_names(Kind::STRATEGY),
             seas: scenario_files::all_names(Kind::SEA),
