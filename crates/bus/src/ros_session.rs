@@ -33,7 +33,7 @@ impl RosSession {
     /// [`BusError`] if the router is elsewhere and does not respond, if its port belongs to a
     /// different program, or if it is a Squall game.
     pub fn open(endpoint: &str) -> Result<RosSession, BusError> {
-        let what = format!("of ROS 2 at {endpoint}");
+        let what = format!("join the ROS 2 network at {endpoint}");
         let net = Net {
             connect: vec![endpoint.to_owned()],
             ..Net::default()
