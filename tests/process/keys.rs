@@ -123,12 +123,19 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
             LIMIT,
         )
     };
+    // The port accepts stops before the gateway is registered for operators on this machine.
+    let registered = || {
+        bus::local_gateways()
+            .into_iter()
+            .find(|entry| entry.control == port)
+    };
+    wait_until("this user finds the gateway", || registered().is_some());
+    let token = registered()
+        .and_then(|entry| entry.token)
+        .expect("the file has the token");
     let is_running =
         || ask(None, OperatorCommand::Disarm).is_ok_and(|reply| reply.refused.is_none());
-    wait_until(
-        "the gateway has joined, and accepts stops from anyone",
-        is_running,
-    );
+    wait_until("the gateway accepts stops from anyone", is_running);
     assert!(matches!(
         ask(None, OperatorCommand::Arm),
         Err(BusError::NeedsToken)
@@ -137,14 +144,6 @@ fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
         ask(Some(&Token::random()), OperatorCommand::Arm),
         Err(BusError::WrongToken)
     ));
-    let registered = || {
-        bus::local_gateways()
-            .into_iter()
-            .find(|entry| entry.control == port)
-    };
-    let token = registered()
-        .and_then(|entry| entry.token)
-        .expect("it is where this user finds it");
     let reply = ask(Some(&token.parse().expect("a token")), OperatorCommand::Arm).expect("it may");
     assert!(reply.refused.is_some(), "but the boat sends nothing");
     sim.stop();
