@@ -103,7 +103,7 @@ def test_the_global_state_places_every_boat() -> None:
         ("17", "ValueError: the action is 17, expected one of 17"),
         ("None", "ValueError: the action is None"),
         ("[float('nan'), 1]", "which is not finite"),
-        ("'XYZ'", "no point of the field"),
+        ("'XYZ'", "not a point of the field"),
         ("{}['x']", "solution.py:4: KeyError"),
     ],
 )
