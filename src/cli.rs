@@ -22,7 +22,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
     (
         "Watch",
         &[
-            "view", "watch", "list", "runs", "replay", "log", "whatif", "helm",
+            "view", "watch", "list", "runs", "replay", "log", "import", "whatif", "helm",
         ],
     ),
     (

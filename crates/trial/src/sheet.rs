@@ -144,6 +144,16 @@ impl Sheet {
         self.heads.iter().position(|known| known == head)
     }
 
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The line of a row in the file.
+    pub fn line(&self, row: usize) -> Option<u64> {
+        self.rows.get(row).map(|(line, _)| *line)
+    }
+
     /// The content of a row and column; the row must exist.
     pub fn text(&self, row: usize, column: usize) -> &str {
         self.rows[row].1.get(column).unwrap_or_default()
@@ -317,7 +327,7 @@ fn separator(bytes: &[u8]) -> u8 {
 }
 
 /// A normalised column name: `Port (rad/s)` is `port_rad_s`.
-fn plain_head(head: &str) -> String {
+pub fn plain_head(head: &str) -> String {
     let joined = words(head.trim_start_matches('\u{feff}'));
     for side in ["port", "starboard"] {
         if let Some(unit) = joined
