@@ -44,7 +44,7 @@ pub fn table(logs: &Logs, boat: &str) -> String {
     let measured: Vec<_> = measured.collect();
     let heads = measured.iter().chain(&commands).map(|(head, _)| *head);
     let mut text = String::from("t_s");
-    heads.for_each(|head| text.extend([",", *head]));
+    heads.for_each(|head| text.extend([",", head]));
     text.push('\n');
     let mut before_s = f64::NEG_INFINITY;
     for (at_s, _) in times {
