@@ -14,9 +14,9 @@ use std::process::ExitCode;
 const BASE: &str = "scenarios/games/pav01_vs_pav01.toml";
 
 #[derive(clap::Args)]
-#[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// Logs of one game or run, recognised by content. BOAT=FILE names the boat of a log
+    /// Logs of one game or run: MOOS .alog, ArduPilot .bin, MAVLink .tlog, ROS 2 bags in MCAP,
+    /// ROS 1 bags, NMEA 0183, CSV, or Squall's recordings. BOAT=FILE names the boat of a log
     #[arg(required = true, value_name = "FILE", value_parser = input)]
     files: Vec<Input>,
     /// Writes the recording to this new file [default: runs/NAME.mcap]
@@ -26,16 +26,13 @@ pub(crate) struct Args {
     /// Without it, the field is drawn around the tracks
     #[arg(long, value_name = "GAME", value_parser = existing)]
     game: Option<PathBuf>,
-    /// Columns of a CSV table: MEANING=COLUMN or MEANING=COLUMN:UNIT, separated by commas
+    /// Columns of a CSV table, as MEANING=COLUMN or MEANING=COLUMN:UNIT, separated by commas.
+    /// Meanings: t, boat, lat, lon, x, y, heading, course, speed, surge, sway, yaw_rate, port,
+    /// starboard. Units: s, ms, us, ns, deg, rad, m, km, m_s, kn, km_h, deg_s, deg_min, rad_s, pct,
+    /// fraction
     #[arg(long, value_name = "MAP")]
     map: Option<Map>,
 }
-
-const AFTER_HELP: &str = "\
-Formats: MOOS .alog, ArduPilot .bin, MAVLink .tlog, ROS 2 bags in MCAP, ROS 1 bags, NMEA 0183, CSV, \
-and Squall's own recordings.
-Meanings: t, boat, lat, lon, x, y, heading, course, speed, surge, sway, yaw_rate, port, starboard.
-Units: s, ms, us, ns; deg, rad; m, km; m_s, kn, km_h; deg_s, deg_min, rad_s; pct, fraction.";
 
 fn input(text: &str) -> Result<Input, String> {
     let (boat, path) = match text.split_once('=') {

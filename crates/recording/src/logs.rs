@@ -18,6 +18,8 @@ use std::io::Cursor;
 
 /// The pace of games read from logs: their inputs are not known.
 pub const PACE: &str = "logs";
+/// The name of a game that is not known.
+const UNKNOWN: &str = "imported";
 /// Time without a position after which a boat's navigation counts as lost, s.
 const SILENCE_S: f64 = 5.0;
 /// Maximum length of a game, s: longer logs contain several games, or their clocks differ.
@@ -404,7 +406,7 @@ impl Logs {
         };
         let ((east, width_m), (north, depth_m)) = (bounds(Quantity::X), bounds(Quantity::Y));
         let field = Field::new(Plan {
-            name: PACE.to_owned(),
+            name: UNKNOWN.to_owned(),
             datum: self.datum.unwrap_or(game.field.plan.datum),
             corner: Ned { north, east },
             along_deg: 90.0,
@@ -413,10 +415,16 @@ impl Logs {
             flag_inset_m: width_m / 8.0,
             ..game.field.plan.clone()
         });
+        let mut strategies = game.strategies.clone();
+        for strategy in &mut strategies {
+            // That of the base; nobody knows how these boats decided.
+            strategy.name = "unknown".to_owned();
+        }
         Scenario {
-            name: PACE.to_owned(),
+            name: UNKNOWN.to_owned(),
             vehicles: boats.iter().map(vehicle).collect(),
             field,
+            strategies,
             recipe: None,
             ..game
         }

@@ -34,7 +34,7 @@ pub(super) struct Problem<'a> {
     /// Measured cells: row and channel, by row.
     cells: Vec<(usize, usize)>,
     /// The first cell of each segment, with the end appended.
-    borders: Vec<usize>,
+    pub(super) borders: Vec<usize>,
     /// The fitted channels of a start: the measured ones.
     fitted: Vec<usize>,
     /// The search coordinate.
