@@ -149,8 +149,7 @@ impl CompassCheck {
         }
     }
 
-    /// The compass offset (rad) with its standard deviation; add it to the compass heading to get
-    /// the true heading.
+    /// The compass offset (rad), to be added to the compass heading, and its standard deviation.
     pub(crate) fn offset_rad(&self) -> Option<(f64, f64)> {
         if self.runs.len() < RUNS_MIN {
             return None;

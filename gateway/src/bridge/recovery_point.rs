@@ -15,7 +15,7 @@ pub(super) enum RecoveryPoint {
     #[default]
     Unknown,
     /// The mission with the point is being uploaded: latitude and longitude, degrees, and whether
-    /// the boat has shown that it accepts lines.
+    /// the boat has reported that it accepts lines.
     Uploading([f64; 2], bool),
     /// The boat has accepted the point (latitude and longitude in degrees).
     Taken([f64; 2]),

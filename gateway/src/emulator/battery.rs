@@ -5,7 +5,7 @@ use crate::lithium;
 use messages::Order;
 use primitives::SimTime;
 
-/// Maximum step, s; after a longer one, the sim was away.
+/// Maximum time step, s; a longer one means that the sim was away.
 const STEP_MAX_S: f64 = 10.0;
 
 /// The properties of a battery and its consumers.
@@ -57,7 +57,7 @@ pub(super) struct Battery {
     /// Current of each thruster, port first, A.
     pub(super) thruster_a: [f64; 2],
     at: Option<SimTime>,
-    /// The voltage shown regardless of the charge, V.
+    /// The voltage reported regardless of the charge, V.
     pub(super) shown_v: Option<f64>,
 }
 
@@ -102,7 +102,7 @@ impl Battery {
         self.pack.system_a + self.thruster_a[0] + self.thruster_a[1]
     }
 
-    /// Its voltage under load, V.
+    /// The voltage under load, V.
     pub(super) fn volts(&self) -> f64 {
         self.shown_v
             .unwrap_or_else(|| self.rest_v() - self.amps() * self.pack.resistance_ohm)
@@ -129,7 +129,7 @@ fn powers(order: Order) -> [f64; 2] {
     let of_speed = |speed_m_s: f64| {
         let share = (speed_m_s / full_m_s).clamp(0.0, 1.0);
         // Power is proportional to the cube of the speed at this thrust, so at 40 % thrust the
-        // battery lasts far longer than 2.5 times as long.
+        // battery lasts far more than 2.5 times as long.
         share * share * share
     };
     match order {

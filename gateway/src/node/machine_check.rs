@@ -55,7 +55,7 @@ fn sleep(inhibitors: &Path) -> Check {
     )
 }
 
-/// The name of the process that prevents sleep with this entry, if the entry does.
+/// The name of the process that owns this inhibitor entry, if the entry prevents sleep.
 fn sleep_inhibitor(text: &str) -> Option<String> {
     let value = |key: &str| {
         text.lines()

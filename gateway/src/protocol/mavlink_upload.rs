@@ -38,9 +38,9 @@ enum Phase {
     Home,
     /// The boat requests items, and then accepts them.
     Items,
-    /// None: the boat has accepted everything.
+    /// No next step: the boat has accepted everything.
     Done,
-    /// None: the boat has refused the mission, for the given reason.
+    /// No next step: the boat has refused the mission, for this reason.
     Refused(String),
 }
 
@@ -58,7 +58,7 @@ impl Upload {
             autocontinue: 1,
             ..MISSION_ITEM_INT_DATA::default()
         };
-        // Speed over the ground, without a throttle.
+        // Specifies the speed over the ground, and no throttle.
         let speed = MISSION_ITEM_INT_DATA {
             param1: 1.0,
             param2: speed_m_s as f32,

@@ -134,7 +134,7 @@ impl SensorCheck {
         let named: Vec<_> = named.collect();
         let names = kinds.join(" or ");
         if *usable == Usable::Position && self.no_fix().is_some() {
-            // Its quality is reported instead.
+            // The fix quality is reported instead.
             return None;
         }
         let lost = named
