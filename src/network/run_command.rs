@@ -49,7 +49,7 @@ pub(crate) struct Args {
     hardware_loop: LoopArgs,
 }
 
-/// Plays a game to watch.
+/// Plays a game for the user to watch.
 pub(crate) fn demo(page: &PageArgs) -> Result<ExitCode> {
     let words = [
         "run",
@@ -160,7 +160,7 @@ impl Player for Processes<'_> {
                 screen::remark(&problem);
             }
         }
-        // Kill the agents that are still searching for the game, whose output would not end.
+        // Kill the agents that are still searching for the game: their output would never end.
         drop(everybody);
         if let Some(report) = &mut report {
             report.run.entry_faults = faults.iter().flatten().collect();
@@ -238,8 +238,8 @@ fn faults_of(line: &str) -> Option<EntryFaults> {
     serde_json::from_str(line).ok()
 }
 
-/// The number of boats for one agent process: the requested number, or more if so many processes
-/// would overload the machine. The game is the same.
+/// The number of boats for one agent process: the requested number, or more if this would start too
+/// many processes for the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))
@@ -311,7 +311,7 @@ fn follow(
             Err(RecvTimeoutError::Disconnected) => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {}
         }
-        // Its last output is printed above.
+        // The page's last output has been printed above.
         if let Some(problem) = page.as_mut().and_then(|page| page.ended()).flatten() {
             bail!(problem);
         }

@@ -101,7 +101,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     // Register before the sim answers, so that a node that finds the game also finds its token. If
-    // registration fails, users must only pass the game's address.
+    // registration fails, users only have to pass the game's address.
     let registration = bus::register(&entry);
     if let Err(error) = &registration {
         screen::remark(&format!(
