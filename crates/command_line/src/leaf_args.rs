@@ -176,7 +176,7 @@ impl LeafArgs {
         }))
     }
 
-    /// The place of this game, or otherwise of the given one.
+    /// The place of this game, or else of the game that the arguments name.
     fn net_of(&self, game: Option<&GameName>, keys: Option<Arc<Bundle>>) -> Result<Net> {
         let game = game.or(self.game.as_ref());
         let mut connect = self.connect.clone();

@@ -64,7 +64,7 @@ pub fn or_newest(given: Option<&Path>) -> Result<PathBuf> {
     Ok(newest)
 }
 
-/// What to do in a folder without recordings.
+/// Advice for a folder without recordings.
 pub fn none_in(folder: &Path) -> String {
     format!(
         "no recordings in {}/; record a game, for example with: squall run strategy_4_vs_3",

@@ -8,7 +8,7 @@ use primitives::printable;
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 
-/// The first error of standard output, other than its reader having closed it.
+/// The first error on standard output, except one caused by its reader closing it.
 static OUTPUT_ERROR: OnceLock<std::io::Error> = OnceLock::new();
 
 /// Checks that everything printed so far was written. `main` calls it last, so that a full disk is
