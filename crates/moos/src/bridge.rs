@@ -22,7 +22,7 @@ use thiserror::Error;
 
 /// Interval of notes about dropped messages.
 const REPORT: Duration = Duration::from_secs(1);
-/// Time that applications without a helm have to connect before the boats join.
+/// Maximum time to wait for a boat's helm once any application has connected.
 const HELM_MAX: Duration = Duration::from_secs(5);
 /// Time for applications to read the end of the game before their database closes.
 const LINGER: Duration = Duration::from_millis(500);

@@ -60,9 +60,9 @@ enum Link {
 
 /// A community, and the last values that the bridge has published there.
 pub struct Community {
-    /// Its name.
+    /// The community's name.
     pub name: String,
-    /// The location of its database, in words.
+    /// The location of the community's database, as text.
     pub place: String,
     link: Link,
     moos: MoosClock,

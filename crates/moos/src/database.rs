@@ -26,7 +26,7 @@ const STORED_MAX: usize = 64 << 20;
 pub const BRIDGE: &str = "squall";
 /// Interval of the database's own variables, s.
 const STATUS_S: f64 = 1.0;
-/// Clock difference above which a client is reported, s.
+/// Clock difference (s) above which a client is reported.
 const SKEW_MAX_S: f64 = 60.0;
 
 /// Counts of drops, by reason.
@@ -163,8 +163,7 @@ impl Database {
             self.dropped.refused += 1;
             return Err(reason);
         }
-        // An upper bound of the difference of the clocks, since it includes the packet's transit
-        // time.
+        // An upper bound on the clock difference, since it includes the packet's transit time.
         let skew_s = if hello.time_s.is_finite() {
             now_s - hello.time_s
         } else {

@@ -215,7 +215,7 @@ fn start_writer(
                 return;
             }
             if packet.is_some_and(|packet| stream.write_all(&packet).is_err()) {
-                // Unless the reading thread has already counted it.
+                // Do not count the client if the reading thread has already done so.
                 let is_counted = mail.visit(|mail| mail.is_closed);
                 database.visit(|database| database.dropped.stalled += u64::from(!is_counted));
                 // This ends the reading thread too.
@@ -466,7 +466,7 @@ mod tests {
         other.send(&[Msg::number(Kind::REGISTER, "COUNT", 0.0, MOOS.now_s())]);
         let start = clock::now();
         let mut count = 0.0;
-        // Until the unresponsive client is dropped, each value reaches the other one.
+        // Until the unresponsive client is dropped, each value reaches the other client.
         wait_for(start, "the deaf client is dropped", || {
             count += 1.0;
             server.visit(|database, now_s| {

@@ -350,8 +350,8 @@ const HEARD_MAX: usize = 1024;
 /// Maximum length of a drawing for the shoreside, bytes.
 const DRAWING_MAX: usize = 8 << 10;
 
-/// Stores the newest value of each variable, but all drawings, because one variable contains many
-/// of them.
+/// Stores the newest value of each variable; but stores all drawings, because one variable carries
+/// many of them.
 pub(crate) fn keep(heard: &mut BTreeMap<String, Msg>, msg: Msg) {
     let is_drawing = DRAWINGS.contains(&msg.key.as_str());
     let key = match msg.as_text() {
