@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// A message with a type of ROS 2.
 pub trait RosMessage {
-    /// Its full name, for example `std_msgs/msg/Header`.
+    /// The full name of the type, for example `std_msgs/msg/Header`.
     const TYPE: &'static str;
 }
 
