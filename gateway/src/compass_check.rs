@@ -162,8 +162,9 @@ impl CompassCheck {
                 .scaled(1.0 / count)
         };
         let heading = mean(|run| run.ordered.scaled(1.0 / run.ordered.length()));
-        // On one heading, an offset cannot be told from a cross current. A plain limit for the
-        // angle between heading and course either misses 30 degrees or fails in a current.
+        // On one heading, an offset cannot be distinguished from a cross current. A fixed limit on
+        // the angle between heading and course either misses offsets of 30 degrees or gives false
+        // alarms in a current.
         if heading.length() > MEAN_HEADING_MAX {
             return None;
         }

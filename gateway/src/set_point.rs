@@ -408,7 +408,7 @@ mod tests {
         else {
             panic!("speed")
         };
-        // Magnetic north is west of true north, so the compass shows more.
+        // Magnetic north is west of true north, so the compass reads higher.
         assert!((heading_deg - 102.5).abs() < 1e-9, "{heading_deg}");
         assert_eq!(speed_m_s, 3.0);
     }

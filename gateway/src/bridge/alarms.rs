@@ -22,15 +22,15 @@ const TILT_S: f64 = 3.0;
 /// A fault that counts only after a minimum duration.
 #[derive(Clone, Copy, Debug, Default)]
 struct Alarm {
-    /// When the current fault began, and its latest size.
+    /// When the fault in progress began, and its latest value.
     since: Option<(SimTime, f64)>,
     /// Whether the fault has outlasted the debounce time and has been reported.
     is_told: bool,
 }
 
 impl Alarm {
-    /// Records the size of the current fault, if any. Returns `text` as a warning once the fault
-    /// has lasted for `debounce_s`, and a remark with its name when it ends.
+    /// Records the value of the fault in progress, if any. Returns `text` as a warning once the
+    /// fault has lasted for `debounce_s`, and a remark with its name when it ends.
     fn note(
         &mut self,
         now: SimTime,
@@ -38,8 +38,8 @@ impl Alarm {
         debounce_s: f64,
         (text, name): (impl Fn(f64) -> String, &str),
     ) -> Option<Event> {
-        // Keep the time of the first report and the latest size, so that the warning states the
-        // current after the debounce time.
+        // Keep the time of the first report and the latest value, so that the warning states the
+        // value after the debounce time.
         self.since = size.map(|size| (self.since.map_or(now, |(since, _)| since), size));
         let lasts = self
             .since
@@ -52,7 +52,7 @@ impl Alarm {
         }
     }
 
-    /// The size of a fault that has been reported.
+    /// The value of a fault that has been reported.
     fn told(&self) -> Option<f64> {
         self.since.filter(|_| self.is_told).map(|(_, size)| size)
     }

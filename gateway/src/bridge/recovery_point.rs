@@ -4,8 +4,7 @@
 use crate::nmea::{Mode, Operator};
 use crate::protocol::ControlReport;
 
-/// Maximum distance of a reported home from our recovery point for them to be the same, degrees:
-/// one metre.
+/// Maximum distance (degrees) at which a reported home counts as our recovery point: one metre.
 const HOME_DEG: f64 = 9e-6;
 
 /// Progress of the boat's recovery point.

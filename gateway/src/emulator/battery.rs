@@ -24,7 +24,7 @@ pub(super) struct Pack {
 }
 
 impl Pack {
-    /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats
+    /// The Surveyor's battery: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats
     /// reported 24.8 V with 15433 of 57741 left, which matches seven lithium cells at that charge
     /// if the count is in mAh.
     pub(super) const SURVEYOR: Pack = Pack {
@@ -34,7 +34,8 @@ impl Pack {
         system_a: 1.3,
         thruster_w: 1000.0,
     };
-    /// Like a BlueBoat's: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about 250 W.
+    /// A pack like a BlueBoat's: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about
+    /// 250 W.
     pub(super) const BLUEBOAT: Pack = Pack {
         cells: 4.0,
         capacity_ah: 36.0,
@@ -92,7 +93,7 @@ impl Battery {
         let order = if self.left > 0.0 { order } else { Order::Hold };
         let rest_v = self.rest_v();
         // Use the voltage at rest, not under load: a loop through the resistance would need
-        // iterations to gain a few per cent.
+        // iteration, for a few per cent of accuracy.
         self.thruster_a = powers(order).map(|share| share * self.pack.thruster_w / rest_v);
         order
     }

@@ -144,8 +144,8 @@ fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
     // The corners are rounded because a margin is a distance: at square corners it would be 1.4
     // times as large.
     let round = |[before, corner, after]: [Ned; 3]| {
-        // From the normal of the side that ends at the corner to that of the next side, a quarter
-        // turn clockwise.
+        // The arc runs from the normal of the side that ends at the corner to that of the next
+        // side, a quarter turn clockwise.
         let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {
             let side = b - a;
             let length_m = a.distance(b);

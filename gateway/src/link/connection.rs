@@ -147,8 +147,8 @@ fn write_on(peer: &Peer, threads: &Threads) {
         {
             Ok(Wrote::All) => {
                 let at = clock::now();
-                // Report it after the system has accepted the last byte, to measure the latency of
-                // orders.
+                // Report the write after the system has accepted the last byte, to measure the
+                // latency of orders.
                 if let Some(tag) = request.settle() {
                     threads.emit(LinkEvent::Written { tag, at });
                 }

@@ -117,7 +117,7 @@ impl Threads {
         let bytes = Arc::new(bytes);
         // Hold the lock to the end, so that all peers get messages in the same order.
         let peers = self.peers.lock();
-        // The number of current peers. A peer that connects later does not get this message, so
+        // Count only the current peers. A peer that connects later does not get this message, so
         // nothing may wait for it.
         let completion = Completion::new(tag, peers.len());
         let displaced = peers

@@ -228,7 +228,7 @@ fn connect(
     let recorder = gateway_loop.recorder.take();
     drop(gateway_loop);
     let recorded = recorder.map(|recorder| recorder.end(Facts::new()));
-    // Set in every case; this also ends the search for a game.
+    // Set the flag in every case; this also ends the search for a game.
     settings.stop.store(true, Ordering::Relaxed);
     drop((port, finder));
     notify(NodeEvent::Ended(&status));

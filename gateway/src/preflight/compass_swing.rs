@@ -57,7 +57,7 @@ impl CompassSwing {
     /// The missing condition.
     pub fn fit(&self) -> Result<Deviation, String> {
         let sectors = self.sectors();
-        // With only part of the circle, the sines of one and two turns cannot be separated.
+        // With only part of the circle, sin h and sin 2h cannot be separated.
         if sectors < SECTORS {
             return Err(format!(
                 "{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"

@@ -248,12 +248,13 @@ impl Boat {
                 is_armed: true,
             });
         match message {
-            // The ordered heading, from version 4.7 on; in earlier versions 0, except for the
+            // From version 4.7 on, this contains the ordered heading; in earlier versions 0, or the
             // bearing to a position.
             MavMessage::NAV_CONTROLLER_OUTPUT(shown) if is_guided => {
                 self.ordered = Some((now, f64::from(shown.nav_bearing)));
             }
-            // Rover sends it only for positions, and when it keeps station without a set-point.
+            // Rover sends this message only for positions, and when it keeps station without a
+            // set-point.
             MavMessage::POSITION_TARGET_GLOBAL_INT(_) if is_guided => self.position_target_at = now,
             // Until the boat reports that it is armed in GUIDED, no set-point that it reports is
             // ours.

@@ -16,8 +16,8 @@ use primitives::SimTime;
 /// Time after which an unanswered message is sent again (s), and the maximum number of attempts.
 const AGAIN_S: f64 = 1.0;
 const TRIES_MAX: u32 = 5;
-/// Maximum distance of a home from the recovery point for it to be the one that was set, 1e-7
-/// degrees: one metre.
+/// Maximum distance of a home from the recovery point at which it counts as the one that was set,
+/// 1e-7 degrees: one metre.
 const SAME_E7: u32 = 90;
 
 /// The upload.

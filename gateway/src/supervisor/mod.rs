@@ -40,8 +40,8 @@ use thiserror::Error;
 pub(crate) struct Conditions {
     /// Whether bytes can reach the boat.
     pub(crate) link: bool,
-    /// For how long the gateway has just not been running (s), if its guard may have stopped the
-    /// boat in that time.
+    /// Length of the gap (s), if the gateway was not running until now and its guard may have
+    /// stopped the boat.
     pub(crate) hung_s: Option<f64>,
     /// Why this gateway does not have sole control of the boat, if it does not.
     pub(crate) control: Option<ControlFault>,
@@ -379,7 +379,7 @@ impl Conditions {
             .or(self.missing_for(task))
     }
 
-    /// The condition beyond the common ones that this task still needs, if any.
+    /// The condition that this task lacks beyond the common ones, if any.
     fn missing_for(&self, task: Task) -> Option<Cause> {
         (task == Task::GoToErp && !self.recovery_point).then_some(Cause::NoRecoveryPoint)
     }
