@@ -284,7 +284,7 @@ fn of(game: &Game, team: usize, count: fn(&Counts) -> u32) -> f64 {
 pub(crate) struct Row<'a> {
     team: &'a str,
     quantity: &'static str,
-    /// Whether it is a fraction of all games.
+    /// Whether the quantity is a fraction of all games.
     is_share: bool,
     recorded: Estimate,
     changed: Estimate,

@@ -118,7 +118,7 @@ impl ChildProcess {
         Some((!status.success()).then(|| format!("{} failed: {status}", self.name)))
     }
 
-    /// Sends a line to its standard input.
+    /// Sends a line to the child's standard input.
     ///
     /// # Errors
     /// If the child no longer reads input.

@@ -129,7 +129,7 @@ impl Player for Processes<'_> {
         let game = unique_game_name(&scenario.name)?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (game.as_str(), endpoint.as_str());
-        // The sim writes it; this process removes it if it remains empty.
+        // The sim writes the file; this process removes it if it remains empty.
         let file = file.map(NewFile::lend);
         let mut sim = start_sim((args, play), place, file.as_ref().map(LentFile::path))?;
         let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
@@ -318,7 +318,8 @@ fn follow(
         if stop.load(Ordering::Relaxed) {
             sim.ask_to_stop();
             asked += 1;
-            // After more than three seconds, at ten polls a second, kill it.
+            // After more than three seconds, at ten polls a second, stop waiting, which kills the
+            // sim.
             if asked > 30 {
                 return Ok(None);
             }

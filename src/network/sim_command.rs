@@ -117,7 +117,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let problem = report.run.recording_problem.clone();
     printer.end(ProgressMessage::Done(Box::new(report)));
     written?;
-    // The parent reads it from the report and prints it itself.
+    // A parent reads the problem from the report and prints it itself.
     if let (Some(problem), false) = (problem, args.for_parent) {
         bail!(problem);
     }
