@@ -9,7 +9,7 @@ pub fn now() -> Instant {
     Instant::now()
 }
 
-/// Sleeps, where there is no condition to wait for.
+/// Sleeps; use this only where there is no condition to wait for.
 #[expect(
     clippy::disallowed_methods,
     reason = "interval between polls of the stop flag"

@@ -8,7 +8,7 @@ use scenario::{Problem, Problems};
 use std::fmt;
 use std::process::ExitCode;
 
-/// The width limit of a quoted line, columns.
+/// Maximum width of a quoted line, columns.
 const COLUMNS: usize = 100;
 
 /// A mistake in the command line that the argument parser cannot detect.

@@ -116,7 +116,7 @@ struct Logs {
     game: Option<PathBuf>,
 }
 
-/// Finds MOOS logs: a file, or all logs in a folder and its subfolders, such as a mission's.
+/// Finds MOOS logs: a file, or all logs in a folder and its subfolders, such as those of a mission.
 fn logs(path: &Path) -> Result<Logs> {
     let folder = match path.parent() {
         _ if path.is_dir() => path,

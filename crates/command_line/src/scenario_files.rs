@@ -17,7 +17,7 @@ const TOML: &str = "toml";
 /// The folder of policies within `scenarios`, and their file extension.
 const POLICIES: (&str, &str) = ("policies", "onnx");
 
-/// The kinds of files that the program knows.
+/// The kinds of files that the program supports.
 static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 
 /// Makes the built-in files available where files on disk are missing, and registers the known

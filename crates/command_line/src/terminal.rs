@@ -46,7 +46,7 @@ pub fn is_seen(page: &str) -> bool {
     is_written("\x1b[H\x1b[J", &printable::coloured(page))
 }
 
-/// Sets when output has colours; `Auto` means if the terminal supports them and `NO_COLOR` is
+/// Sets when output has colours; with `Auto`, if the terminal supports them and `NO_COLOR` is
 /// unset.
 pub fn set_colour(choice: clap::ColorChoice) {
     let choice = match choice {

@@ -105,7 +105,8 @@ impl BoatMind {
             if msg.key == "IVPHELM_STATE" {
                 let before = self.helm_at.replace(now);
                 if before.is_none_or(|before| (now - before).as_s() > HELM_SILENCE_S) {
-                    // A mission's initial values of game variables do not come from the game.
+                    // Publish everything again: a mission's own initial values may have replaced
+                    // those of the game.
                     community.forget_all();
                 }
             } else if DRAWINGS.contains(&msg.key.as_str()) {

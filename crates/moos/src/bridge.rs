@@ -37,12 +37,12 @@ pub struct Settings {
     pub wait: Duration,
     /// Time without a picture after which the sim counts as lost.
     pub silence: Duration,
-    /// Set from outside to leave the game.
+    /// Set by the caller to leave the game.
     pub stop: Arc<AtomicBool>,
     /// Boats by name, with the addresses of their databases; without an address, the next port is
     /// used.
     pub boats: Vec<(String, Option<Address>)>,
-    /// A team whose boats are all connected.
+    /// The team whose boats are all to be connected.
     pub team: Option<String>,
     /// The first port of boats without an address.
     pub first_port: u16,

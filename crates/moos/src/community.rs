@@ -151,7 +151,7 @@ impl Community {
     }
 
     /// Publishes a value if it differs from the last one published by this function. Returns the
-    /// message, if it did.
+    /// message if it was published.
     pub fn publish_change(&mut self, key: &str, value: Value) -> Option<Msg> {
         if self.published.get(key) == Some(&value) {
             return None;

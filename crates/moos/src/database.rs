@@ -36,7 +36,7 @@ pub struct Dropped {
     pub wrong_type: u64,
     /// Values, variables or subscriptions beyond a limit.
     pub over_limit: u64,
-    /// Mail of clients that did not read it.
+    /// Mail for clients that did not read it.
     pub unread: u64,
     /// Packets and datagrams that could not be decoded.
     pub malformed: u64,
@@ -100,7 +100,7 @@ struct Client {
     mail: Arc<Watched<Mail>>,
     subscriptions: BTreeMap<String, Subscription>,
     wildcards: Vec<Wildcard>,
-    /// The subscriptions, among these patterns, that apply to variables received so far.
+    /// Subscriptions derived from the patterns, for the variables received so far.
     matched: BTreeMap<String, Subscription>,
 }
 

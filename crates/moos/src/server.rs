@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// Time without a complete packet after which a client is dropped, as by MOOSDB.
+/// Time without a complete packet after which a client is dropped, as in MOOSDB.
 const SILENCE: Duration = Duration::from_secs(5);
 /// Time without accepting a byte after which a client is dropped.
 const WRITE_MAX: Duration = Duration::from_secs(2);
@@ -263,7 +263,7 @@ impl<'a> Packets<'a> {
         let start = clock::now();
         while length < greeting.len() {
             length += self.read_some(&mut greeting[length..])?;
-            // Single bytes must not extend the time.
+            // A trickle of single bytes must not extend the timeout.
             if clock::since(start) > SILENCE {
                 return None;
             }

@@ -10,7 +10,7 @@ use messages::{Frame, Message, Picture, VehicleOrder};
 use primitives::SimTime;
 use serde::{Deserialize, Serialize};
 
-/// A message with a type of ROS 2.
+/// A message with a ROS 2 type.
 pub trait RosMessage {
     /// The full name of the type, for example `std_msgs/msg/Header`.
     const TYPE: &'static str;

@@ -64,8 +64,8 @@ impl Node {
         format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
     }
 
-    /// The token of one of its endpoints, whose number must be unique among the session's endpoints
-    /// and nodes.
+    /// The token of one of the node's endpoints, whose number must be unique among the session's
+    /// endpoints and nodes.
     pub fn endpoint_token(
         &self,
         endpoint: u32,

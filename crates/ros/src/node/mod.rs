@@ -59,7 +59,7 @@ pub struct Settings {
     pub is_operator: bool,
     /// Maximum time to search for the sim and to wait for free boats.
     pub wait: Duration,
-    /// Set from outside to end the bridge.
+    /// Set by the caller to end the bridge.
     pub stop: Arc<AtomicBool>,
 }
 
