@@ -123,8 +123,8 @@ struct Entry {
 }
 
 impl ContactModel {
-    /// The shapes of these kinds of boat, given by length and beam (m), on this field. Hulls that
-    /// are not solid pass through each other.
+    /// The shapes of boats of these kinds (length and beam, m) and of this field. Hulls that are
+    /// not solid pass through each other.
     pub fn new(
         hulls: impl Iterator<Item = (f64, f64)>,
         field: &Field,
@@ -168,8 +168,8 @@ impl ContactModel {
         }
     }
 
-    /// Passes hulls closer than `close_m` to rapier, possibly more than necessary. The results must
-    /// not change.
+    /// Passes hulls closer than `close_m` to rapier, even where that is unnecessary. The results
+    /// must not change.
     #[doc(hidden)]
     pub fn widen(&mut self, close_m: f64) {
         self.close_m = self.close_m.max(close_m);
@@ -460,8 +460,8 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
 
 /// Reads a boat back from rapier's world. Without an active contact, the boat keeps our motion.
 ///
-/// Uses rapier's impulse rather than its change of velocity: a push on the bow quarter moves a hull
-/// with more mass across than along in a direction other than the push. Taking the change of
+/// Uses rapier's impulse rather than its change of velocity: a hull has more mass across than
+/// along, so an oblique push does not move it in the direction of the push. Using the change of
 /// velocity along the push would add energy.
 fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &mut Displacement) {
     let body = &world.bodies[entry.body];

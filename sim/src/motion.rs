@@ -78,7 +78,7 @@ impl Fleet {
         }
     }
 
-    /// Uses these instructions, which affect only how fast it computes.
+    /// Uses these instructions, which affect only how fast it runs.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }

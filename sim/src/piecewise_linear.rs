@@ -78,7 +78,7 @@ impl PiecewiseLinear {
         let cell = ((x - self.first.0) * self.per_x) as usize;
         let mut i = usize::from(self.index[cell.min(self.index.len() - 1)]);
         // A cell contains at most one border unless the pieces are very uneven. Unlike a branch,
-        // the sum is never mispredicted.
+        // the addition is never mispredicted.
         i += usize::from(x >= self.pieces[i].end);
         while x >= self.pieces[i].end {
             i += 1;

@@ -52,7 +52,8 @@ pub struct WorldPlan<'a> {
     pub sensor_period: SimTime,
     /// Whether boats collide with each other rather than only with walls and obstacles.
     pub boats_are_solid: bool,
-    /// Distance below which [`World::pairs`] lists all pairs of boats, possibly among others, m.
+    /// Distance (m) within which [`World::pairs`] lists every pair of boats; it may also list
+    /// others.
     pub pairs_within_m: f64,
     /// Seeds of the randomness of sea and sensors.
     pub seeds: Seeds,
@@ -125,8 +126,8 @@ impl World {
     /// [`NoStart`] if the boats do not fit into their spawn area, or the randomised values are
     /// inconsistent.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
-        // The seed first: a file may randomise values, and everything below depends on the drawn
-        // game.
+        // Apply the seed first: a file may randomise values, and everything below depends on the
+        // drawn game.
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
         let seeds = scenario.seeds();
@@ -470,7 +471,7 @@ impl World {
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
-                // It stays at its last valid position, where others may hit it.
+                // The boat stays at its last valid position, where others may hit it.
                 *boat = BoatState {
                     pose: boat.pose,
                     quarantined: true,

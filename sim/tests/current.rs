@@ -118,7 +118,7 @@ fn a_shear_grows_across_and_turns_a_hull_that_lies_across() {
             "y = {y}: {got:?}"
         );
     }
-    // Seen from above, the water south of a place flows east faster. A hull that points north is
+    // Seen from above, the water farther south flows east faster. A hull that points north is
     // turned anticlockwise by the whole shear; one that points east is not turned.
     let now = model.at_time(SimTime::ZERO);
     for (heading_deg, want_rad_s) in [(0.0, -0.004), (180.0, -0.004), (90.0, 0.0), (45.0, -0.002)] {

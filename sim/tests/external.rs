@@ -281,7 +281,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
         ..nav(50.0, 40.0, 0.0, u)
     };
     contest.advance();
-    // Taken 0.1 s ago and delayed since then.
+    // A fix taken 0.1 s ago and delayed since then.
     let fix_at = contest.now() - SimTime::from_s(0.1);
     contest
         .report(REAL, fix, fix_at, true)

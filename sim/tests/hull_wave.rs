@@ -186,7 +186,7 @@ fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
 #[test]
 fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
     // For the shipped boats at most 0.4 %, in yaw. The response of a long hull to waves several
-    // times shorter varies faster with heading than the table, but is small.
+    // times shorter varies too fast with heading for the table, but is small.
     let heron = (boat(1.35, 1.0, 0.1), 0.005);
     let surveyor = (surveyor(), 0.005);
     let otter = (boat(2.0, 1.08, 0.195), 0.005);

@@ -169,7 +169,7 @@ fn it_spins_on_the_spot_under_opposed_shafts() {
     let astern = -70.0 * (0.01108_f64 / 0.006445).sqrt();
     let (_, mut world) = from_rest([70.0, astern], 60);
     let mut around = || {
-        // One turn, to the tick.
+        // One turn, to the nearest tick.
         let rate = world.state().boats[0].nu.yaw;
         let ticks = (std::f64::consts::TAU / (0.05 * rate)).round() as u32;
         let mut middle = Ned::default();

@@ -39,7 +39,7 @@ fn turned(v: Ned, by_rad: f64) -> Ned {
     }
 }
 
-/// The scenario with north moved `by_rad` to port: everything turns to starboard about the datum.
+/// The scenario rotated clockwise by `by_rad` about the datum.
 fn with_all_turned(mut scenario: Scenario, by_rad: f64) -> Scenario {
     let sea = &mut scenario.sea;
     for from_rad in [

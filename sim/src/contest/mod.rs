@@ -51,7 +51,7 @@ pub struct Contest {
     work: Work,
     /// Identifies the game in snapshots.
     scenario_mark: u64,
-    /// Inputs since the last request, if they are kept.
+    /// Inputs since the last [`Contest::take_inputs`], if they are kept.
     given: Option<Vec<Input>>,
 }
 
@@ -141,7 +141,7 @@ impl Contest {
         &self.scenario
     }
 
-    /// The game of `scenario` with another seed. An E-stop or halt of this game stays in force.
+    /// The game of `scenario` with this seed. An E-stop or halt of this game stays in force.
     ///
     /// # Errors
     /// As for [`Contest::new`].

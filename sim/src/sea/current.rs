@@ -57,8 +57,8 @@ impl CurrentField {
         }
     }
 
-    /// Caches the values that [`CurrentField::at_time`] needs at `now`. Affects only speed, not a
-    /// single bit of the results.
+    /// Caches the values that [`CurrentField::at_time`] needs at `now`. This only saves time: the
+    /// results have the same bits.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some((wander, process)) = &mut self.wander {
             let place = wander_place(wander, now);
@@ -89,7 +89,7 @@ impl CurrentField {
         }
         if let Some(tide) = self.tide {
             let turns = now.as_s() / tide.period_s + tide.phase;
-            // Reduce the argument first, so that a game of many tides keeps its digits.
+            // Reduce the argument first, so that a game of many tides does not lose digits.
             let (sin, _) = math::sin_cos(TAU * (turns - turns.floor()));
             uniform_m_s = uniform_m_s + tide.flood_m_s.scaled(sin);
         }

@@ -65,7 +65,7 @@ pub struct SeaModel {
     half_s: f64,
 }
 
-/// A hull size in the waves.
+/// A hull of one size in the waves.
 #[derive(Clone, Debug)]
 struct Shape {
     waves: HullWaves,
@@ -120,8 +120,8 @@ impl SeaModel {
             .waves
             .as_ref()
             .map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
-        // At least half a metre: the wind profile is a power of the height and has no meaning at
-        // the water itself.
+        // At least half a metre: the wind profile is a power of the height and is meaningless at
+        // the surface itself.
         let highest = boats
             .iter()
             .map(|boat| boat.windage.height_m)
@@ -199,7 +199,7 @@ impl SeaModel {
         )
     }
 
-    /// Computes waves with these instructions, which affect only how fast it computes.
+    /// Computes waves with these instructions, which affect only how long that takes.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.waves = self
             .waves
@@ -212,7 +212,7 @@ impl SeaModel {
         }
     }
 
-    /// Caches the values needed at `now`. Affects only speed, not a single bit of the results.
+    /// Caches the values needed at `now`. This only saves time: the results have the same bits.
     pub fn prepare(&mut self, now: SimTime) {
         self.current.prepare(now);
         if let Some(wind) = &mut self.wind {

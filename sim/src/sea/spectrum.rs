@@ -94,7 +94,7 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             .zip(&densities)
             .map(|(x, density)| x * x * density),
     );
-    // With energy alone, only a handful of strata would represent the short waves, which cause the
+    // With strata of equal energy, only a handful would represent the short waves, which cause the
     // slopes.
     let both = Curve {
         x: energy.x,

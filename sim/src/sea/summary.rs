@@ -181,8 +181,8 @@ mod tests {
         let game =
             scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
         let mut sea = Sea::at_rest();
-        // 0.128 m/s in 5 m/s and 0.340 m/s in 10 m/s of wind at the boat; the estimate assumed
-        // slightly more windage.
+        // Estimated drift: 0.128 m/s in 5 m/s and 0.340 m/s in 10 m/s of wind at the boat; the
+        // estimate assumed slightly more windage.
         for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {
             sea.wind = Some(Wind {
                 speed_10m_m_s: wind_m_s,

@@ -77,7 +77,7 @@ impl PlaneWave {
     /// shallow water.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
-        // Beyond this the quotient is 0 to the last bit, and slightly beyond, the hyperbolic sine
+        // Beyond this the quotient is 0 to the last bit, and further on the hyperbolic sine
         // overflows.
         if twice > 40.0 {
             1.0
@@ -91,7 +91,8 @@ impl PlaneWave {
         let k = self.wavenumber_rad_m;
         let draught_m = draught_m.min(self.depth_m);
         let bottom = libm::exp(-2.0 * self.depth_rad());
-        // sinh 2kh − sinh 2k(h − T), over sinh² k h and e^(2kh) / 2 each.
+        // Numerator: sinh 2kh − sinh 2k(h − T). The code divides it and sinh² k h by e^(2kh) / 2
+        // each.
         let at_keel = libm::exp(-2.0 * k * draught_m);
         let layer = (1.0 - at_keel) * (1.0 + bottom * bottom / at_keel);
         let a = self.component.amplitude_m;
@@ -289,8 +290,8 @@ impl WaveField {
         }
     }
 
-    /// The same field, computed with these instructions, as is everything built from it. The choice
-    /// affects only how fast it is computed.
+    /// The same field; it and everything built from it use these instructions. The choice affects
+    /// only how long the computation takes.
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField {
             instructions,
@@ -420,7 +421,7 @@ impl WaveField {
             .collect()
     }
 
-    /// The same force from each wave's reflected part and its travel ahead and to starboard.
+    /// The same force, given each wave's reflected part and its direction of travel in body axes.
     pub(super) fn drift_of(
         &self,
         boat: &Boat,
@@ -441,7 +442,8 @@ impl WaveField {
         }
     }
 
-    /// The variance of a quantity that is `per_m` of amplitude, given the square of `per_m`.
+    /// The variance of a quantity with the amplitude `per_m` for each metre of wave amplitude,
+    /// given the square of `per_m`.
     fn mean(&self, per_m_squared: impl Fn(&PlaneWave) -> f64) -> f64 {
         self.waves
             .iter()
