@@ -55,7 +55,7 @@ impl Team {
         }
         self.picture = Some(std::ptr::from_ref(picture).addr());
         std::mem::swap(&mut self.view, &mut self.before);
-        // A mind that has not had a picture since may still use it.
+        // A mind that has not received a picture since then may still use the old view.
         if Arc::get_mut(&mut self.view).is_none() {
             self.view = Arc::new(TeamView::clone(&self.before));
         }
@@ -152,7 +152,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     }
 
     /// Delivers messages that teammates in other processes sent after the previous decision. Minds
-    /// ignore messages of the other team.
+    /// ignore messages from the other team.
     pub fn receive(&mut self, messages: &[Word]) {
         if !messages.is_empty() {
             self.boats
@@ -201,8 +201,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
                 .iter_mut()
                 .map(|boat| (picture_of(boat.vehicle), boat))
                 .collect();
-            // In small parts, as threads become free: some boats take several times as long as
-            // others.
+            // Hand out the boats in small parts, as threads become free: some boats take several
+            // times as long as others.
             let parts = Mutex::new(all.chunks_mut(MINDS_MIN / 2));
             let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
             let work = || {

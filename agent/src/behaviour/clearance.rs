@@ -33,7 +33,7 @@ pub(super) struct Clearance<'a> {
     pub(super) handling: Handling,
     pub(super) lookahead_s: f64,
     pub(super) save_m: f64,
-    /// Extra value of the first metres from the edge: 0 weighs all metres of `save_m` equally, 1
+    /// Extra value of the first metres from the edge: 0 weights all metres of `save_m` equally, 1
     /// gives the first ones double weight and the last ones none.
     pub(super) bend: f64,
 }
@@ -232,11 +232,11 @@ fn reached(old_m_s: f64, after_s: f64, handling: &Handling) -> (f32, f32) {
 /// A turn relative to an edge: outward distances per m/s of speed.
 #[derive(Clone, Copy)]
 struct Outward {
-    /// The farthest outward distance during the turn, s (times the speed).
+    /// The farthest outward distance during the turn, divided by the speed, s.
     farthest_s: f64,
     /// The time of the farthest point, s.
     farthest_after_s: f64,
-    /// The outward distance at the end of the turn, s (times the speed).
+    /// The outward distance at the end of the turn, divided by the speed, s.
     end_s: f64,
 }
 
@@ -288,11 +288,11 @@ struct Way {
     start_m: f32,
     /// Outward drift over the whole way, m.
     drift_m: f32,
-    /// Outward distance to the farthest point of the turn, and back from there, s (times the
-    /// speed).
+    /// Outward distance to the farthest point of the turn, and back from there, divided by the
+    /// speed, s.
     out_s: f32,
     back_s: f32,
-    /// Outward distance on the straight run, s (times the speed).
+    /// Outward distance on the straight run, divided by the speed, s.
     straight_s: f32,
     /// Minimum and maximum mean speed on each part of the path, m/s.
     within: [(f32, f32); 3],
@@ -375,8 +375,8 @@ impl Ways {
         }
     }
 
-    /// A bit mask of the paths that may come within `save_m` of the edge at some speed; the larger
-    /// of `most_m_s` and the old speed is the maximum.
+    /// A bit mask of the paths that may come within `save_m` of the edge at some speed up to
+    /// `most_m_s`.
     #[inline(always)]
     fn low(&self, most_m_s: f32, save_m: f32) -> u32 {
         let begins_m = self.start_m - larger(self.drift_m, 0.0) - ROUNDING_M;

@@ -163,8 +163,8 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
-            // If drift is not estimated, the boat's present sway: drift across the edge must always
-            // count.
+            // If drift is not estimated, use the boat's present sway: drift across the edge must
+            // always count.
             drift: situation.motion.drift_now(&situation.own.nav),
             handling: situation.motion.handling(),
             margin_m,

@@ -268,8 +268,8 @@ impl Kernel for Passes<'_> {
 
     #[inline(always)]
     fn run(mut self) {
-        // Inside there is no distance to keep: all courses are equally bad, and other behaviours
-        // decide how to get out.
+        // Inside the polygon there is no distance to keep: all courses are equally bad, and other
+        // behaviours decide how to get out.
         if is_within(&self.outline.corners, self.at) {
             for k in 0..self.grid.courses() {
                 self.table.lowered_mut(k).fill(Lanes::splat(0.0));

@@ -79,7 +79,7 @@ pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
 }
 
 /// Keeps clear of the edge of a disc by at least `min_m`, ideally by `max_m`, for the duration of a
-/// leg. On a side other than `leave_to`, if given, the same distance is worth less.
+/// leg. If `leave_to` is given, the same distance on the other side is worth less.
 pub(super) fn keep_clear(
     situation: &Situation,
     disc: MovingPoint,

@@ -224,7 +224,8 @@ pub(super) struct Ways {
     share: f32,
     w: Vector,
     t: f32,
-    /// Maximum distance of other paths outside the polygon of these (m), and its growth rate (m/s).
+    /// Maximum distance of other paths outside the polygon of the outer four (m), and its growth
+    /// rate (m/s).
     off: f32,
     bend: f32,
 }

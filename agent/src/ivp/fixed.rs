@@ -20,8 +20,8 @@ const _: () = assert!(scenario::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
 /// The value of a place outside the grid: below all others, but the sum of two does not overflow.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
 
-/// From this number to twice its value, the numbers of an `f32` are the integers, so adding to it
-/// rounds to an integer.
+/// From this number to twice its value, the values of an `f32` are exactly the integers, so adding
+/// to it rounds to an integer.
 const INTEGERS: f32 = (1_u32 << 23) as f32;
 
 // A product is smaller, so the sum of both rounds to nearest, half to even.

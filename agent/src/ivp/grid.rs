@@ -36,8 +36,8 @@ impl Grid {
     /// A grid of `courses` by `speeds`, up to `speed_max_m_s`.
     ///
     /// # Panics
-    /// With less than one course or two speeds, more than 65,536 of either, or a top speed that is
-    /// not both positive and finite.
+    /// If there is no course or fewer than two speeds, if there are more than 65,536 of either, or
+    /// if the top speed is not positive and finite.
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
         assert!(
             (1..=1 << 16).contains(&courses),

@@ -112,8 +112,8 @@ impl TeamInbox {
                 None => sender.before.take_if(|sent| sent.seq < seq),
             };
             let on_time = sent.as_ref().is_some_and(|sent| sent.seq + 1 == seq);
-            // Count it and keep the previous values: a boat continues with the last ones it
-            // received.
+            // Count the message as missing and keep the previous values: a boat continues with the
+            // last values that it received.
             missed += u64::from(awaited && !on_time);
             if !self.has_begun && sender.talks {
                 sender.awaited_at = Some(seq.saturating_add(1));
@@ -232,7 +232,7 @@ mod tests {
         receive(&mut inbox, &say(4, &[(1, 1.0)]));
         assert!(inbox.is_complete(5));
         delivered(&mut inbox, 5);
-        // A later message proves that it can no longer arrive.
+        // A later message proves that the awaited one can no longer arrive.
         receive(&mut inbox, &say(6, &[(1, 1.0)]));
         assert!(inbox.is_complete(6));
     }

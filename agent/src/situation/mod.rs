@@ -30,8 +30,8 @@ use turn_estimate::turning_on;
 
 /// Distance to an unknown object, m.
 const NOWHERE_M: f64 = 1e9;
-/// Maximum distance from the centre of its untagging place at which a boat was tagged there and
-/// must leave it, as a fraction of the radius.
+/// A boat that is tagged within this fraction of the radius from the centre of its untagging place
+/// must leave the place first.
 const WELL_INSIDE: f64 = 0.5;
 /// Fraction of the radius beyond which the boat counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
@@ -190,7 +190,7 @@ impl Situation {
             self.step_s,
             !(own.disabled || own.tagged && self.model.rules.tagged_boat == TaggedBoat::IsDriven),
         );
-        // Only if this boat has seen exactly the pictures in it.
+        // Use the team's view only if this boat has seen exactly the same pictures.
         match view.filter(|view| view.follows(&self.view)) {
             Some(view) => self.view = Arc::clone(view),
             None => TeamView::own(&mut self.view).take_in(picture),

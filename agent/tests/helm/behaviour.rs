@@ -47,7 +47,7 @@ fn boat(text: &str) -> Boat {
     }
 }
 
-/// Whether a decision has the expected course and speed, or there is none as expected.
+/// Whether a decision is as expected: a course and a speed, or none.
 fn is_wanted(report: &HelmReport, want: &str) -> bool {
     match report
         .course_deg
@@ -209,7 +209,7 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
         let behaviour = format!(
             "kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'"
         );
-        // Beyond its own side, where no boat can be tagged.
+        // The contact is beyond the boat's own side, where no boat can be tagged.
         let report = alone_decides(
             &behaviour,
             &with_contact(Boat::at(10.0, 0.0), Boat::at(10.0, distance_m)),
