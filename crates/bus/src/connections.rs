@@ -1,5 +1,5 @@
 //! The open connections of a server with limited slots: a new connection always gets one, if
-//! necessary that of the connection idle longest.
+//! necessary by evicting the connection that has been idle longest.
 
 use parking_lot::Mutex;
 use std::collections::BTreeMap;
@@ -93,7 +93,8 @@ impl Open {
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
             // The address with the most connections first: a host that opens thousands evicts its
-            // own, while a host with a single connection keeps it, however long it is idle.
+            // own connections, while a host with a single connection keeps it, however long it is
+            // idle.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));
         self.connections
             .iter()

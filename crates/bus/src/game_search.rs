@@ -253,8 +253,8 @@ pub fn join(
     // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // Tell the sim the node's session, so that it can act as soon as that link ends. A killed
-    // process closes its socket, and its boats hold in the same decision.
+    // Tell the sim the identifier of the node's session, so that it can act as soon as that link
+    // ends. A killed process closes its socket, and its boats hold in the same decision.
     let version = primitives::VERSION.to_owned();
     let node = bus.id();
     let asked = clock::now();
@@ -289,8 +289,8 @@ pub fn join(
     }
 }
 
-/// Checks that the keys, if any, allow joining in this role: the hub drops queries without the
-/// right.
+/// Checks that the keys, if any, allow joining in this role: the hub drops queries that the keys do
+/// not allow.
 fn check_keys(
     bus: &Bus,
     scenario: &Scenario,

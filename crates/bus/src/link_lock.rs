@@ -23,7 +23,7 @@ pub struct LinkLock(
 /// Why locking a link failed.
 #[derive(Debug, Error)]
 pub enum LinkLockError {
-    /// A different process holds it.
+    /// A different process holds the link.
     #[error("another gateway on this machine holds the link {link}: {}", .holder.map_or("a process that is \
         ending".to_owned(), |pid| format!("process {pid}")))]
     Held {
@@ -95,7 +95,7 @@ fn read(file: &mut File) -> Option<u32> {
     text.trim().parse().ok()
 }
 
-/// The lock file of a link; a device is identified by itself, not by its path.
+/// The lock file of a link; a device is identified by its real path, not by a symbolic link.
 fn path(link: &str) -> io::Result<PathBuf> {
     let device = link
         .strip_prefix("serial://")

@@ -73,7 +73,7 @@ static REPLACED: OnceLock<&'static dyn Runtime> = OnceLock::new();
 /// The runtime of this process.
 pub(crate) fn runtime() -> &'static dyn Runtime {
     // One per process, not passed to each constructor: a boat's supervisor, an inbox and a stop
-    // order would all have to hold it, and two could meet in one node.
+    // order would all have to hold it, and two runtimes could meet in one node.
     REPLACED.get().copied().unwrap_or(&System)
 }
 

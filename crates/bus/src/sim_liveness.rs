@@ -120,9 +120,9 @@ impl SimLiveness {
             missing,
             unheard,
         } = self.patience;
-        // The order decides. A dying sim is heard until its token disappears. If the link fails,
-        // silence comes first and zenoh drops the link after 10 s; an agent that left then would be
-        // missing when the cable is plugged in again.
+        // The order of the signs decides. A dying sim is heard until its token disappears. If the
+        // link fails, silence comes first and zenoh drops the link after 10 s; an agent that left
+        // then would be missing when the cable is plugged in again.
         let is_cut_off =
             |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {

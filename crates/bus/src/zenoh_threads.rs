@@ -61,6 +61,8 @@ pub fn restart_for_keys() -> Result<(), BusError> {
     ))
 }
 
+/// Checks that this process has the threads that a session with keys requires.
+///
 /// # Errors
 /// [`BusError::Threads`] if this process may not open a session with keys.
 pub(crate) fn check_threads_for_keys() -> Result<(), BusError> {

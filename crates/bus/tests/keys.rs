@@ -211,7 +211,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
     );
 }
 
-/// Whether `to` receives messages published by `from`. It does not if only a later message arrives.
+/// Whether `to` receives messages published by `from`. False if only a later message arrives.
 fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     let heard = Arc::new(Watched::new((false, false)));
     let [of_word, of_free] = [Arc::clone(&heard), Arc::clone(&heard)];

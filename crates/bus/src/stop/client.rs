@@ -230,7 +230,7 @@ impl Shared {
                     .lock()
                     .as_ref()
                     .and_then(|game| game.bus.token.clone());
-                // The next status names it again.
+                // The next status names the port again.
                 drop(self.add_gateway(at, Some(&vehicle), token));
             }
             // The answer to a stop includes the boat's state.
