@@ -312,8 +312,8 @@ pub struct GatewayStatus {
     pub would_send: Option<String>,
     /// All counters, by name.
     pub counts: Vec<(String, u64)>,
-    /// Median and 99th percentile of two latencies in µs: from sentence in to topic out, and from
-    /// order in to sentence out. Missing until measured.
+    /// Median and 99th percentile of two latencies in µs: from incoming sentence to published
+    /// topic, and from incoming order to outgoing sentence. Missing until measured.
     pub latency_us: [Option<[f64; 2]>; 2],
 }
 

@@ -118,7 +118,7 @@ pub struct PolicyReport {
     /// The chosen option, if it chooses among options.
     #[serde(default)]
     pub option: Option<String>,
-    /// Why it makes no proposal, if so.
+    /// Why it makes no proposal, if it makes none.
     pub fault: Option<String>,
     /// Probability of each discrete action; empty for continuous actions.
     pub probabilities: Vec<f32>,

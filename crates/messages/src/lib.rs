@@ -308,8 +308,8 @@ pub enum Control {
     /// In a paused game, plays one decision.
     Step,
     /// Limits the speed to this many simulated seconds per second; `None` removes the limit. A
-    /// lockstep game plays no faster than that, a clocked game exactly that fast. A game with real
-    /// boats keeps its pace.
+    /// lockstep game plays no faster than that, a real-time game at exactly that speed. A game with
+    /// real boats keeps its pace.
     Speed(Option<f64>),
     /// Makes all boats hold while the game continues.
     Halt,
