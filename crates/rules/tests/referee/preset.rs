@@ -6,7 +6,7 @@ use rules::Rules;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The shipped rule books, modified so that boats may be side by side and every look checks
+/// The shipped rule books, modified so that boats may be side by side and every check covers
 /// everything.
 static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");

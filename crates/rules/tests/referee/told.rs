@@ -3,7 +3,7 @@
 //! - `## NAME` begins a scene, `# …` is a comment.
 //! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, its overrides (JSON values, times
 //!   in nanoseconds), and `boats=2` for each team (default 1), `sides=3` (default 2),
-//!   `flag=[TEAM,X,Y]` for another flag.
+//!   `flag=[TEAM,X,Y]` for an extra flag.
 //! - `0 at 60 40; 1 at 65 40 -> Tagged 1 Opponent 0, …`: boats are placed at x and y in metres, and
 //!   the next look returns exactly these events, in this order; or `nothing`. Boats stay until they
 //!   are placed elsewhere. `0 goes 60 40` moves a boat there from its position. `0 asks tag` (or
