@@ -209,7 +209,8 @@ impl World {
             let calls = std::mem::take(&mut state.calls);
             let to_drop = std::mem::take(&mut state.to_drop);
             drop(state);
-            // Dropping these may send a message, which would deadlock while the state is locked.
+            // Dropping these declarations may send a message, which would deadlock while the state
+            // is locked.
             drop(to_drop);
             IN_CALLBACK.set(true);
             calls.into_iter().for_each(|call| call());
