@@ -40,8 +40,8 @@ impl Due {
 
     /// Records that a decision is made now.
     pub(crate) fn advance(&mut self, now: SimTime, period: SimTime) {
-        // Counted from decision to decision, not from picture to picture: lost pictures do not
-        // shift it.
+        // Count from decision to decision, not from picture to picture: lost pictures do not shift
+        // it.
         let next = self.0.unwrap_or(now) + period;
         // After a long gap, missed decisions are not made up.
         self.0 = Some(if next > now { next } else { now + period });

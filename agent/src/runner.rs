@@ -221,8 +221,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);
         sent.clear();
-        // After all have decided: teammates receive a boat's messages at the next decision, in one
-        // process as across several, for any order of the minds.
+        // Send after all have decided: teammates receive a boat's messages at the next decision, in
+        // one process as across several, for any order of the minds.
         self.boats.iter().for_each(|boat| boat.mind.send(&mut sent));
         self.receive(&sent);
         self.sent = sent;
@@ -254,7 +254,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     /// The orders of the last decision as a message to the sim that issued this ticket, identical
     /// on every call. `None` before the first decision.
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
-        // With the picture's own time and number, from which the sim identifies the answered tick.
+        // Use the picture's own time and number, by which the sim identifies the answered tick.
         let stamp = Stamp {
             version: Orders::VERSION,
             ..self.decided?

@@ -192,8 +192,8 @@ impl ContactModel {
         if touches.is_empty() {
             return;
         }
-        // In vehicle order, each boat once, with the direction of its nearest neighbour: other
-        // boats passed to rapier must not affect the result.
+        // Process boats in vehicle order, each once, with the direction of its nearest neighbour:
+        // other boats passed to rapier must not affect the result.
         touches.sort_by(|a, b| {
             a.boat
                 .cmp(&b.boat)
@@ -483,7 +483,7 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
         east: at.y,
     };
     displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
-    // Not rapier's sine and cosine, because a snapshot contains only the angle.
+    // Do not use rapier's sine and cosine: a snapshot contains only the angle.
     displacement.rotation_to = displacement.to.rotation();
     let impulse = (body.linvel() - entry.velocity) * entry.mass_kg;
     let impulse = frame::body_from_ned(

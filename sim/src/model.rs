@@ -316,7 +316,7 @@ impl Model {
         )
     }
 
-    /// The same for a point boat.
+    /// Like [`Model::hull_moved`], for a point boat.
     pub(crate) fn point_moved(
         &self,
         from: Pose,

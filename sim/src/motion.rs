@@ -41,7 +41,7 @@ pub struct Motion<T = f64> {
     pub turn_rad: T,
 }
 
-/// The same for boats side by side.
+/// Planar quantities of boats side by side.
 type Planars<const N: usize> = Planar<Lanes<f64, N>>;
 type Forcings<const N: usize> = Forcing<Lanes<f64, N>>;
 type Motions<const N: usize> = Motion<Lanes<f64, N>>;
@@ -128,7 +128,8 @@ impl Fleet {
         motions: &mut [Motion],
     ) {
         let forcings = Forcings::gather(forcings);
-        // Two compiled versions: a branch inside would keep the loop out of vector registers.
+        // There are two compiled versions: a branch inside would keep the loop out of vector
+        // registers.
         let moved = if is_uniform {
             self.instructions.run(Advance::<N, true> {
                 row,
@@ -250,7 +251,7 @@ struct Row<const N: usize> {
     m_cross: Lanes<f64, N>,
     /// m plus the replacement for A22 in the Coriolis terms.
     m_munk: Lanes<f64, N>,
-    /// The same minus A11: the Munk moment.
+    /// The replacement for A22 minus A11, for the Munk moment.
     munk: Lanes<f64, N>,
     inverse_surge: Lanes<f64, N>,
     inverse_sway: Lanes<f64, N>,

@@ -46,7 +46,7 @@ impl PiecewiseLinear {
             .iter()
             .map(|piece| piece.end - piece.at.0)
             .fold(width, f64::min);
-        // As fine as the narrowest piece, so that a cell contains at most one border.
+        // Cells are as fine as the narrowest piece, so that a cell contains at most one border.
         let cells = ((width / narrowest).ceil() as usize).clamp(1, CELLS_MAX);
         let piece_at = |x: f64| {
             pieces[..pieces.len() - 1]

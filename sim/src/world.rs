@@ -241,8 +241,8 @@ impl World {
                     .displacements
                     .get(i)
                     .map_or(boat.pose.at, |displacement| displacement.from.at);
-                // As in Pyquaticus: back to the point of entry, turned along the circle, with the
-                // tangential part of its velocity.
+                // As in Pyquaticus, the boat returns to its point of entry and turns along the
+                // circle, with the tangential part of its velocity.
                 boat.pose.at = way_back(
                     (came_from, boat.pose.at),
                     centre,
@@ -366,11 +366,11 @@ impl World {
     }
 
     fn find_pairs(&mut self) {
-        // One search for both, with the larger reach: with many boats the search dominates the
+        // One search with the larger reach serves both: with many boats the search dominates the
         // cost.
         let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
-        // At the end of a tick, for the next tick and for the referee: both need close pairs at the
-        // same positions.
+        // Search at the end of a tick, for the next tick and for the referee: both need close pairs
+        // at the same positions.
         let boats = &self.state.boats;
         let pairs = self
             .work

@@ -413,7 +413,7 @@ fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
             starboard: 1.0,
         },
     );
-    // In the keep-out circle of its own flag.
+    // The boat is in the keep-out circle of its own flag.
     for _ in 0..50 {
         report(&mut contest, nav(22.0, 40.0, 30.0, 0.0));
         contest.advance();

@@ -96,8 +96,8 @@ fn it_accelerates_as_the_reference_does() {
     assert!(error < 0.005, "position error {:.3} %", error * 100.0);
 }
 
-/// Its velocity at every tick for this many seconds under these shaft speeds, from rest, and the
-/// final world.
+/// The Otter's velocity at every tick for this many seconds under these shaft speeds, from rest,
+/// and the final world.
 fn from_rest(n_rad_s: [f64; 2], seconds: u32) -> (Vec<[f64; 3]>, World) {
     let mut world = World::of_game(&common::alone("otter", "calm_salt"), 1).expect("the boats fit");
     let step = |_| {

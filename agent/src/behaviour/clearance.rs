@@ -247,8 +247,8 @@ impl Outward {
     /// extremes at right angles to the normal.
     #[inline(always)]
     fn new(turn: &Turn, (from_rad, sin_from): (f64, f64), sin_to: f64) -> Outward {
-        // Mirrored, so that one formula serves turns to both sides and a mirrored scene gives the
-        // same bits.
+        // Mirror the turn, so that one formula serves turns to both sides and a mirrored scene
+        // gives the same bits.
         let side = if turn.by_rad < 0.0 { -1.0 } else { 1.0 };
         let end_s = side * (sin_to - sin_from) / turn.turn_rad_s;
         let to_parallel_rad = (side * FRAC_PI_2 - from_rad) * side;

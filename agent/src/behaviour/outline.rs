@@ -335,8 +335,8 @@ impl Passes<'_> {
             if last < 100.0 {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
-                // By ascending speed: first the speeds that come no nearer than the turn, then the
-                // computed ones, then the last value for all higher speeds.
+                // Fill the row by ascending speed: first the speeds that come no nearer than the
+                // turn, then the computed ones, then the last value for all higher speeds.
                 let known = std::iter::repeat_n(before.0[i], least);
                 let known = known.chain(
                     self.outline

@@ -31,7 +31,7 @@ use steadiness::Steadiness;
 struct BehaviourInstance {
     run: BehaviourRun,
     logic: Box<dyn BehaviourLogic>,
-    /// Its weight at the last decision; 0 if it did not run.
+    /// The behaviour's weight at the last decision; 0 if the behaviour did not run.
     weight: f64,
 }
 
@@ -101,7 +101,7 @@ impl HelmMind {
         let mut helm = HelmMind::new(scenario, vehicle, program);
         let is_killed =
             |fault: &Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
-        // Only if a fault requires it: in a fleet, a copy of the scenario for each boat would be
+        // Keep the scenario only if a fault requires it: in a fleet, a copy for each boat would be
         // too expensive.
         if scenario.faults.iter().any(is_killed) {
             let scenario = scenario.clone();

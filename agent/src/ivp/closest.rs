@@ -277,7 +277,8 @@ impl Ready {
         } else {
             1.0
         };
-        // One square root for all three legs: the smallest square belongs to the smallest distance.
+        // One square root serves all three legs: the smallest square belongs to the smallest
+        // distance.
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 

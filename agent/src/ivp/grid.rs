@@ -181,8 +181,8 @@ fn course_rad(k: usize, n: usize) -> f64 {
 
 /// The unit vector of course `k` of `n`, mirrored from a course in the first octant.
 fn direction(k: usize, n: usize) -> (f32, f32) {
-    // Mirrored rather than computed for each course: library cosines of mirrored angles may differ
-    // in the last bit, and a mirrored game would then take a different course.
+    // Directions are mirrored rather than computed for each course: library cosines of mirrored
+    // angles may differ in the last bit, and a mirrored game would then take a different course.
     if 2 * k > n {
         let (north, east) = direction(n - k, n);
         return (north, -east);

@@ -34,8 +34,8 @@ impl<T: Copy> Lanes<T> {
     pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {
         let mut halves = self.0;
         let mut width = LANES / 2;
-        // In halves, always with the same pairs, so that sums and comparisons have the same order
-        // on every machine.
+        // Reduce in halves, always with the same pairs, so that sums and comparisons have the same
+        // order on every machine.
         while width > 0 {
             for i in 0..width {
                 halves[i] = of_two(halves[i], halves[i + width]);

@@ -82,8 +82,8 @@ impl Objective<'_> {
             }) => {
                 let course = course.of_course(grid, k);
                 let speed = speed.of_speed(grid, j);
-                // For display only: the search adds the two parts as integers, each with its own
-                // weight, as in `contribution`.
+                // This sum is for display only: the search adds the two parts as integers, each
+                // with its own weight, as in `contribution`.
                 (f64::from(course) * share + f64::from(speed) * (1.0 - share)) as f32
             }
             Parts::Field(field) => {

@@ -32,7 +32,7 @@ pub struct Preference {
 pub struct Choice {
     /// The chosen point.
     pub decision: Decision,
-    /// Its weighted sum: the largest on the grid.
+    /// The point's weighted sum: the largest on the grid.
     pub value: f64,
     /// Number of points evaluated, some counted twice; no other point could win.
     pub evaluated: usize,

@@ -26,7 +26,7 @@ pub(super) struct Best {
 /// Own ship's current motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Present {
-    /// Its course, ticks.
+    /// The current course, ticks.
     pub(super) course: f64,
     pub(super) speed_m_s: f64,
 }
@@ -76,7 +76,7 @@ impl Kernel for Search<'_> {
     fn run(mut self) -> (Best, usize) {
         let formulas = self.sums.fields.len();
         self.bounds.parts.resize(formulas, Lanes::splat(0));
-        // Above `DONE`, so that nothing finished is taken, and below every sum.
+        // Start above `DONE`, so that no finished cell is taken, and below every sum.
         let mut best = Best {
             value: DONE + 1,
             decision: Decision {
@@ -97,7 +97,7 @@ impl Kernel for Search<'_> {
         }
         self.bound_lists();
         self.bound_sectors(best.value);
-        // Most promising first.
+        // Search the most promising sectors first.
         while let Some(sector) = take_most(&mut self.bounds.sectors, best.value) {
             let across = sector / self.cells.sector_speeds;
             let along = sector % self.cells.sector_speeds;

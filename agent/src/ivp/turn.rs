@@ -92,9 +92,9 @@ pub(super) struct Turning {
 /// A turn onto a course.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
-    /// Its duration, s.
+    /// Duration, s.
     pub(super) duration: f32,
-    /// Its end point, through the water, m.
+    /// End point, through the water, m.
     pub(super) by: Vector,
 }
 
@@ -186,7 +186,7 @@ pub(super) struct MeanSpeed {
     ahead: f32,
     /// The maximum gain until then (m/s), and its reciprocal.
     gain: (f32, f32),
-    /// The same for the maximum loss.
+    /// The maximum loss until then (m/s), and its reciprocal.
     loss: (f32, f32),
 }
 

@@ -178,8 +178,8 @@ impl AgentLoop {
                 decided |= self.decide()?;
             }
             if let Some(queries) = &mut self.helm_queries {
-                // After the orders have been sent: inspection slows down a lockstep game but
-                // changes none of its decisions.
+                // Answer queries after the orders have been sent: inspection slows down a lockstep
+                // game but changes none of its decisions.
                 queries.answer(&mut self.runner, decided);
             }
             match self.sim.state() {

@@ -132,7 +132,8 @@ impl Sender {
     /// Stores a word sent after decision `seq`, if there is space.
     fn note(&mut self, seq: u64, word: Word) -> bool {
         let Some(newest) = self.newest.as_mut().filter(|newest| newest.seq == seq) else {
-            // In order of arrival, not by stamp: a wrong stamp displaces at most one message.
+            // Keep messages in order of arrival, not by stamp: a wrong stamp displaces at most one
+            // message.
             self.before = self.newest.replace(Sent {
                 seq,
                 words: vec![word],

@@ -75,8 +75,8 @@ impl DriftEstimate {
             return;
         }
         let (north, east, both) = self.variance;
-        // Bounded, so that a single wave does not determine the drift along an axis unobserved for
-        // an hour.
+        // The variance is bounded, so that a single wave does not determine the drift along an axis
+        // unobserved for an hour.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
         let north = grown(north);
         let east = grown(east);

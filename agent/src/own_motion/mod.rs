@@ -105,7 +105,8 @@ impl OwnMotion {
         }
         // A repeated velocity carries no new information.
         if own.fix_ns > self.fix_at {
-            // At most a second: after a gap in navigation, one velocity must not count as several.
+            // Count at most a second: after a gap in navigation, one velocity must not count as
+            // several.
             self.drift.observe(
                 &own.nav,
                 &self.file,

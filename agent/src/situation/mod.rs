@@ -41,7 +41,7 @@ const WELL_OUTSIDE: f64 = 1.2;
 pub(crate) struct OtherBoat {
     pub(crate) vehicle: VehicleId,
     pub(crate) is_enemy: bool,
-    /// Its estimated current position.
+    /// Estimated current position.
     pub(crate) at: Ned,
     velocity: Velocity,
     pub(crate) psi_rad: f64,
@@ -61,8 +61,8 @@ pub(crate) struct OtherBoat {
     pub(crate) intrudes: bool,
 }
 
-/// A velocity over the ground as received, m/s. It is rotated on demand, since few boats of a large
-/// team need it.
+/// A velocity over the ground as received, m/s. It is rotated on demand, since only a few boats of
+/// a large team require that.
 #[derive(Clone, Copy, Debug)]
 enum Velocity {
     Ned(Ned),
@@ -211,7 +211,7 @@ impl Situation {
         let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
-        // With hysteresis: with a single limit, position noise would toggle the state.
+        // Use hysteresis: with a single limit, position noise would toggle the state.
         let from_home =
             self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
         self.leaving =
@@ -466,7 +466,8 @@ impl Values for Situation {
 fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>) -> f64 {
     let points = from.zip(to);
     match measure {
-        // Far away, but finite: expressions may subtract, and infinity minus infinity is NaN.
+        // The default is far away, but finite: expressions may subtract, and infinity minus
+        // infinity is NaN.
         Measure::Distance => points.map_or(NOWHERE_M, |(from, to)| from.at.distance(to.at)),
         Measure::Closing => points.map_or(0.0, |(from, to)| closing_m_s(from, to)),
         _ => 0.0,

@@ -148,7 +148,7 @@ impl TeamView {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
-                // In games of 20 against 20 or more, rotating all of them to the field's frame
+                // In games of 20 against 20 or more, rotating all velocities to the field's frame
                 // measurably slowed down decisions, and only a few are needed.
                 velocity: Velocity::Body(velocity),
                 psi_rad: mate.nav.psi_rad,

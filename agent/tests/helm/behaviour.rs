@@ -25,7 +25,7 @@ fn here() -> Picture {
     alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
 }
 
-/// The same with one contact; all other boats are far away.
+/// Like [`here`], with one contact; all other boats are far away.
 fn with_contact(own: Boat, contact: Boat) -> Picture {
     picture(
         0.0,
@@ -180,7 +180,7 @@ fn a_loiter_goes_round_the_way_it_is_told() {
 #[test]
 fn a_loiter_goes_all_the_way_round() {
     let ring = "kind = 'loiter'\nellipse = { centre = [0, 0], along_m = 60, across_m = 30 }\nturn = 'clockwise'\nspeed_m_s = 2";
-    // It turns at once.
+    // The boat turns at once.
     let track = driven(
         ring,
         Boat::at(0.0, 15.0).going(90.0, 2.0),

@@ -26,8 +26,8 @@ struct Rights {
 /// Any node that reaches a hub without keys.
 const ANYBODY: Rights = Rights {
     publishes: &[
-        // All levels below, not just one: without keys, the team in the topic proves nothing, and
-        // the sim checks the ticket of each order anyway.
+        // Allow all levels below, not just one: without keys, the team in the topic proves nothing,
+        // and the sim checks the ticket of each order anyway.
         "order/**",
         "say/{team}",
         "policy/{boat}",

@@ -163,7 +163,7 @@ impl Port {
     fn close(&mut self, is_closed: bool) {
         if self.is_closed != is_closed {
             self.is_closed = is_closed;
-            // In this order, since new connections would take the lent descriptors.
+            // The order matters: new connections would take the lent descriptors.
             self.listeners
                 .iter()
                 .for_each(|listener| filter(*listener, is_closed));

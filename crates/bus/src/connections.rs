@@ -68,8 +68,8 @@ impl Connections {
             },
         );
         drop(open);
-        // Outside the lock: closing calls the connection's owner, which may drop its slot and so
-        // take the lock.
+        // Close outside the lock: closing calls the connection's owner, which may drop its slot and
+        // so take the lock.
         surplus.into_iter().for_each(|entry| (entry.close)());
         Slot {
             open: Arc::clone(&self.open),

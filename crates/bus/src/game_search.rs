@@ -18,10 +18,10 @@ pub const ANSWER: Duration = Duration::from_secs(2);
 /// Why a game or a part of it is missing.
 #[derive(Debug, Error)]
 pub enum Missing {
-    /// It may appear later.
+    /// The missing part may appear later.
     #[error("{0}")]
     Yet(String),
-    /// It will never appear.
+    /// The missing part will never appear.
     #[error(transparent)]
     Forever(#[from] Refusal),
 }

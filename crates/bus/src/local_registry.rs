@@ -36,7 +36,7 @@ pub struct GatewayEntry {
     pub vehicle: String,
     /// The game that it should join; if unset, the only one running.
     pub game: Option<String>,
-    /// Its control port.
+    /// The gateway's control port.
     pub control: SocketAddr,
     /// Process number of the gateway.
     pub pid: u32,

@@ -166,8 +166,8 @@ impl Net {
         set(&mut config, "mode", "\"client\"")?;
         // Without an endpoint, a leaf on a local network scouts for a hub.
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
-        // One attempt: the search for a game looks up the place before each attempt, since the next
-        // sim may have a different place and token.
+        // Make only one attempt: the search for a game looks up the place before each attempt,
+        // since the next sim may have a different place and token.
         set(&mut config, "connect/timeout_ms", "0")?;
         set(&mut config, "connect/exit_on_failure", "true")?;
         Ok(config)

@@ -51,7 +51,7 @@ impl NodeThread {
 
 impl Drop for NodeThread {
     fn drop(&mut self) {
-        // Before `join`: not every runtime returns a handle.
+        // Wait before `join`: not every runtime returns a handle.
         if self.is_done.wait(END_MAX, |is_done| *is_done) {
             // A panicked thread has no result.
             self.handle

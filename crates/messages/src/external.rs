@@ -224,7 +224,7 @@ impl GatewayCommand {
         GatewayCommand::Boat { name, command }
     }
 
-    /// Whether it only queries a boat's status.
+    /// Whether the command only queries a boat's status.
     pub fn is_status(&self) -> bool {
         matches!(self, GatewayCommand::Boat { command, .. } if *command == OperatorCommand::Status)
     }

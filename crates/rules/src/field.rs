@@ -72,7 +72,7 @@ pub enum Walls {
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Its position when no boat carries it.
+    /// The flag's position when no boat carries it.
     pub home: Ned,
 }
 

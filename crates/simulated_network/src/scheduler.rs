@@ -189,7 +189,7 @@ impl World {
 
     fn await_turn(&self, me: usize) {
         while self.running.load(Ordering::Acquire) != me {
-            // In a loop, because `park` may return spuriously.
+            // Loop, because `park` may return spuriously.
             thread::park();
         }
     }

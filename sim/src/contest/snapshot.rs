@@ -140,15 +140,16 @@ impl Contest {
         let mut hash = xxh3::Xxh3::new();
         hash.update(&xxh3::xxh3_128(&bytes(&(self.world.state(), standing))).to_le_bytes());
         for logged in events {
-            // In recorded form, field by field: changing only the Rust types must not change a
-            // digest.
+            // Hash events in recorded form, field by field: changing only the Rust types must not
+            // change a digest.
             let record = messages::EventRecord::from(*logged);
             hash.update(&record.tick.to_le_bytes());
             hash.update(&[record.kind]);
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
         }
-        // Only if present, so that adding radios did not change the digests of games without them.
+        // Hash these only if present, so that adding radios did not change the digests of games
+        // without them.
         if self.radio.is_some()
             || self.sightings.is_some()
             || self.watchdogs.iter().any(Option::is_some)

@@ -393,8 +393,8 @@ impl<'w> GameServer<'w> {
 
     /// Drops agents that have been silent for longer than the scenario allows.
     pub(super) fn lose_silent(&mut self) {
-        // In working time, not by the clock: agents must not be blamed for silence while the sim
-        // was suspended.
+        // Measure in working time, not by the clock: agents must not be blamed for silence while
+        // the sim was suspended.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
             if self.time.worked.saturating_sub(self.heard[i]) > patience {

@@ -88,8 +88,8 @@ impl GaussMarkov {
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
-            // Once per level, so that the only transcendental function in a look-up is the noise's
-            // logarithm.
+            // Computed once per level, so that the only transcendental function in a look-up is the
+            // noise's logarithm.
             let rho = libm::exp(-apart);
             (
                 rho / (1.0 + rho * rho),

@@ -253,7 +253,7 @@ impl Kernel for At<'_> {
     }
 }
 
-/// The same for [`HullWaves::at_with`].
+/// Like [`At`], for [`HullWaves::at_with`].
 struct AtWith<'a> {
     waves: &'a HullWaves,
     submergence: &'a Submergence,

@@ -45,8 +45,8 @@ pub(super) const ERROR: f64 = 1.2e-6;
 #[inline(always)]
 pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
     let rounder = Lanes::<f64>::splat(ROUNDER);
-    // In double precision, so that a phase is as accurate after a day as at the start. The rest is
-    // in single precision, which takes half the time.
+    // Reduce in double precision, so that a phase is as accurate after a day as at the start. The
+    // rest is in single precision, which takes half the time.
     let r = (turns - ((turns + rounder) - rounder)).single();
     let x = r * r;
     let sin_half = quartic(SIN, x) * r;

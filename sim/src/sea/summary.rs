@@ -89,7 +89,7 @@ fn wave_summary(
     boat: &Boat,
     density_kg_m3: f64,
 ) -> WaveSummary {
-    // From ahead and from abeam, the extremes for a hull that is longer than wide.
+    // Waves from ahead and from abeam are the extremes for a hull that is longer than wide.
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
         let velocities = field.waves.iter().map(|wave| {

@@ -421,7 +421,8 @@ impl WaveField {
             .collect()
     }
 
-    /// The same force, given each wave's reflected part and its direction of travel in body axes.
+    /// Like [`WaveField::mean_drift_newton`], given each wave's reflected part and its direction of
+    /// travel in body axes.
     pub(super) fn drift_of(
         &self,
         boat: &Boat,

@@ -188,7 +188,7 @@ mod tests {
         ] {
             assert_eq!(StopRequest::decode(&request(command).encode()), None);
         }
-        // In the format of a line at a control port.
+        // A request in the format of a line at a control port.
         let line = StopRequest::decode(br#"{"body":{"fleet":"e_stop"}}"#).expect("a request");
         assert_eq!(
             (line.game, line.command),

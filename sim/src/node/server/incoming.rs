@@ -34,7 +34,8 @@ impl GameServer<'_> {
         self.answer();
         // Messages may arrive faster than they are read: the game must continue.
         for _ in 0..MESSAGES_MAX {
-            // Before each message, so that a flood delays an E-stop by at most one message.
+            // Execute commands before each message, so that a flood delays an E-stop by at most one
+            // message.
             self.obey();
             let Some(incoming) = next else { return };
             self.take_in(incoming);
@@ -120,7 +121,7 @@ impl GameServer<'_> {
             self.refusals
                 .add(Refusal::BadNumber, u64::from(taken.is_err()));
             self.heard[vehicle.index()] = self.time.worked;
-            // At once, not with the next pictures, which may be a decision later.
+            // Pass the order on at once, not with the next pictures, which may be a decision later.
             self.pass_on_now(vehicle);
         }
     }
