@@ -1,5 +1,5 @@
 //! A competition entry as the mind of boats: a separate Python process decides for the boats of a
-//! team. In it, `host.py` translates to the entry's terms.
+//! team. In that process, `host.py` translates between Squall and the entry's interface.
 //!
 //! As with MOOS boats, this is an exception among minds: decisions come from outside, and the wait
 //! for them is limited by the wall clock. Without an answer in time, the boat stops.

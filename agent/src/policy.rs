@@ -116,7 +116,7 @@ impl BoardPolicy {
         let output = self.network.output(self.model.output());
         let likeliest = action_of(&self.model, output)?;
         let action = if self.is_sampled {
-            // A separate stream for each boat: teammates with the same network draw different
+            // Use a separate stream for each boat: teammates with the same network draw different
             // actions.
             let me = situation.model.me;
             let noise = Noise::new(situation.model.seed, &format!("policy/{}", me.index()));

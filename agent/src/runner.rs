@@ -48,7 +48,7 @@ impl Team {
         }
     }
 
-    /// Processes the team's picture; of several in one decision, only the first.
+    /// Processes the team's picture; if there are several in one decision, only the first.
     fn take_in(&mut self, picture: &Picture) {
         if self.picture.is_some() || self.view.team().index() != usize::from(picture.team) {
             return;
@@ -295,7 +295,8 @@ mod tests {
     use super::*;
     use primitives::SimTime;
 
-    /// Orders the proposed speed plus the values received, and sends its number of decisions.
+    /// A mind that orders the proposed speed plus the values received, and sends its number of
+    /// decisions.
     struct Adder {
         me: VehicleId,
         decisions: f64,

@@ -69,8 +69,8 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-/// In a fresh breeze with 64 wave components, gusts, a current and all sensors; then with flawed
-/// thrusters and a battery as well.
+/// The step in a fresh breeze with 64 wave components, gusts, a current and all sensors; then with
+/// flawed thrusters and a battery as well.
 fn rough(c: &mut Criterion) {
     let afloat = shipped("pav01_afloat.toml")
         .of_seed(1)

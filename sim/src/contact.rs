@@ -27,7 +27,7 @@ const CLOSING_MAX_M_S: f64 = 8.0;
 /// Distance beyond rapier's look-ahead within which hulls are passed to rapier, m.
 const SPARE_M: f64 = 0.05;
 /// Thickness of a wall, and how far it extends beyond the corners, m.
-// Thick, so that no boat is pushed out on the far side within one tick.
+// Walls are thick, so that no boat is pushed out on the far side within one tick.
 const WALL_M: f64 = 10.0;
 /// Restitution and friction between hulls: fendered fibreglass, wet.
 const RESTITUTION: f64 = 0.1;
@@ -132,8 +132,8 @@ impl ContactModel {
         dt_s: f64,
     ) -> ContactModel {
         let hull = |(length_m, beam_m): (f64, f64)| {
-            // A capsule, because rapier resolves it at about half the cost of a box, and a bow is
-            // more round than square.
+            // Use a capsule, because rapier resolves it at about half the cost of a box, and a bow
+            // is more round than square.
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
             HullShape {

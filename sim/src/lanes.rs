@@ -131,7 +131,7 @@ impl Lanes<f32> {
     #[inline(always)]
     pub(crate) fn sum(&self, number: usize) -> f64 {
         let at = |place: usize| f64::from(self.0[ROW * number + place]);
-        // The same order on every machine: a sum of four parts, whatever the register width.
+        // Use the same order on every machine: a sum of four parts, whatever the register width.
         (at(0) + at(1)) + (at(2) + at(3))
     }
 }

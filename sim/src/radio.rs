@@ -60,7 +60,7 @@ struct Line {
 /// A message in transit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Sent<T> {
-    /// The decision at which it was sent.
+    /// The decision at which the message was sent.
     decision: u64,
     arrival: SimTime,
     message: T,

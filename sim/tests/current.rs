@@ -151,7 +151,7 @@ fn eddy_at(centre: Ned) -> Current {
 fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
     let centre = Ned::from_xy(40.0, -10.0);
     let model = model(&eddy_at(centre), 1);
-    // Γ from the fastest flow, Γ / (2 π a) (1 − e^−α) / √α, with both numbers from the literature:
+    // Γ from the fastest flow, Γ / (2 π a) (1 − e^−α) / √α; in the literature, (1 − e^−α) / √α is
     // 0.6382.
     let gamma = PEAK_M_S * TAU * CORE_M / 0.638_173;
     for radius_m in [1.0, 10.0, CORE_M, 60.0, 125.0, 127.0, 500.0] {

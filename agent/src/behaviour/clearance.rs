@@ -15,9 +15,9 @@ const ROUNDING_M: f32 = 0.01;
 
 /// Lowers the utilities of a table according to each candidate's clearance from the edges.
 ///
-/// A candidate's value is the fraction of `save_m` that it keeps: half for the closest distance to
-/// an edge on the way, half for the distance at the end of the look-ahead. The worst edge counts.
-/// The fraction `x` yields `x + bend x (1 - x)` of each half.
+/// A candidate's value is the fraction of `save_m` by which it stays inside: half of the value for
+/// the closest distance to an edge on the way, half for the distance at the end of the look-ahead.
+/// The worst edge counts. The fraction `x` yields `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -137,7 +137,7 @@ struct Edge {
     sin_from: f64,
     /// Distance inside the edge at the start of the turn, m.
     start_m: f32,
-    /// Outward drift over the whole way, m.
+    /// Outward drift over the whole path, m.
     drift_m: f32,
 }
 
@@ -241,7 +241,7 @@ struct Outward {
 }
 
 impl Outward {
-    /// From one angle to the edge's outward normal (with its sine) to another (with its sine).
+    /// A turn from one angle to the edge's outward normal to another, each given with its sine.
     ///
     /// The outward distance is the integral of the cosine: the sine divided by the turn rate, with
     /// extremes at right angles to the normal.
@@ -286,7 +286,7 @@ impl Outward {
 struct Way {
     /// Distance inside the edge at the start of the turn, m.
     start_m: f32,
-    /// Outward drift over the whole way, m.
+    /// Outward drift over the whole path, m.
     drift_m: f32,
     /// Outward distance to the farthest point of the turn, and back from there, divided by the
     /// speed, s.
@@ -303,7 +303,7 @@ impl Way {
     #[inline(always)]
     fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;
-        // The arc is run at the mean of old and new speed and the rest at the new speed, both
+        // The arc is driven at the mean of old and new speed and the rest at the new speed, both
         // within the acceleration limits.
         let farthest_m = self.start_m - self.out_s * held(0.5 * (old_m_s + new_m_s), out);
         let end_m = farthest_m - self.drift_m + self.back_s * held(new_m_s, back)

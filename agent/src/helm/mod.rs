@@ -265,10 +265,10 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        // A fraction of the weights, at most a tenth (checked when the file is loaded): it can
-        // delay a change of mind, but not outweigh safety. Edges do not count: they do not move, so
-        // noise causes no changes of mind near them, and counting them would keep a boat there that
-        // is needed elsewhere.
+        // The bonus is a fraction of the weights, at most a tenth (checked when the file is
+        // loaded): it can delay a change of mind, but not outweigh safety. Edges do not count: they
+        // do not move, so noise causes no changes of mind near them, and counting them would keep a
+        // boat there that is needed elsewhere.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,

@@ -41,8 +41,8 @@ impl Weight {
         } else {
             0.0
         };
-        // Single precision, as in the bounds: with two different roundings a bound could fall below
-        // its points.
+        // Use single precision, as in the bounds: with two different roundings a bound could fall
+        // below its points.
         Weight((weight / QUANTUM) as f32)
     }
 
@@ -59,7 +59,8 @@ impl Weight {
     /// A weighted utility (0 to 100) in quanta, rounded to nearest, half to even.
     #[inline(always)]
     pub(super) fn quanta(self, utility: f32) -> i32 {
-        // No float-to-integer conversion, which is slow because it handles out-of-range values.
+        // Avoid a float-to-integer conversion, which is slow because it handles out-of-range
+        // values.
         (utility * self.0 + INTEGERS).to_bits() as i32 - INTEGERS.to_bits() as i32
     }
 }

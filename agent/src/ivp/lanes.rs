@@ -13,7 +13,8 @@ const _: () = assert!(SIDE * SIDE == LANES);
 
 /// A group of numbers. Plain loops over all lanes become single instructions.
 #[derive(Clone, Copy, Debug)]
-// A cache line and the widest register: loads that straddle two lines cost twice as much.
+// Aligned to a cache line, the size of the widest register: loads that straddle two lines cost
+// twice as much.
 #[repr(align(64))]
 pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
 

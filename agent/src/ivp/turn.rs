@@ -103,9 +103,11 @@ pub(super) struct Turn {
 pub(super) struct Fan {
     pub(super) first: Turn,
     pub(super) last: Turn,
-    /// Maximum distance of any of the end points from the straight line between these two, m.
+    /// Maximum distance of any of the end points from the straight line between those of `first`
+    /// and `last`, m.
     pub(super) off: f32,
-    /// Maximum deviation of a duration from the corresponding mean of these two, s.
+    /// Maximum deviation of a duration from the corresponding mean of those of `first` and `last`,
+    /// s.
     pub(super) off_s: f32,
 }
 

@@ -243,8 +243,8 @@ impl AgentLoop {
             });
             self.talk.publish_words(self.runner.sent(), stamp);
         }
-        // Messages to teammates before orders: the sim advances once it has the orders, and by then
-        // the messages are in transit.
+        // Send messages to teammates before orders: the sim advances once it has the orders, and by
+        // then the messages are in transit.
         self.talk.send()?;
         if let Some(orders) = self.runner.answer(self.ticket) {
             self.orders.send(&orders)?;

@@ -20,9 +20,9 @@ struct Sent {
 #[derive(Clone, Debug)]
 struct Sender {
     team: TeamId,
-    /// Whether a different process runs it.
+    /// Whether a different process runs the boat.
     is_mate: bool,
-    /// Whether its strategy sends messages at all.
+    /// Whether the boat's strategy sends messages at all.
     talks: bool,
     newest: Option<Sent>,
     before: Option<Sent>,

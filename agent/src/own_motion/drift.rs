@@ -41,7 +41,7 @@ const NOISE_M_S: f64 = 0.05;
 const SPREAD_TIME_S: f64 = 20.0;
 /// Relative error of the slide computed from the boat file.
 const SLIDE_ERROR: f64 = 0.5;
-/// Correlation time of that error, s: a turn.
+/// Correlation time of that error, s: about one turn.
 const SLIDE_TIME_S: f64 = 4.0;
 
 /// The estimate. The default is that for an unknown boat.

@@ -49,7 +49,7 @@ pub(crate) struct OtherBoat {
     /// See [`OtherBoat::turning_on`]; only in a large fleet.
     turned: Option<MovingPoint>,
     pub(crate) tagged: bool,
-    /// Whether power play has put it out of action.
+    /// Whether power play has put the boat out of action.
     pub(crate) disabled: bool,
     pub(crate) carrying: Option<FlagId>,
     /// The earliest time of the boat's next tag: for a teammate from its own messages; for enemies

@@ -68,7 +68,7 @@ pub struct TeamView {
 struct Pairings(Mutex<Vec<[Arc<[Pair]>; 2]>>);
 
 impl Clone for Pairings {
-    /// Empty: copying would only save computing them again.
+    /// Returns empty pairings: copying would only save computing them again.
     fn clone(&self) -> Pairings {
         Pairings::default()
     }
@@ -239,7 +239,7 @@ impl TeamView {
     /// Calls `each` with the index and the distance (m) of every boat within this distance of a
     /// place, in any order.
     pub(super) fn near(&self, at: Ned, reach_m: f64, mut each: impl FnMut(usize, f64)) {
-        // No square root for boats that are far away.
+        // Avoid the square root for boats that are far away.
         let far_m2 = reach_m * reach_m * (1.0 + 1e-9);
         let mut look = |i: usize, there: Ned| {
             let squared = at.distance_squared(there);

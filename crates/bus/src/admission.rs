@@ -54,8 +54,8 @@ pub(crate) fn begin(
         };
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
-            // Identified by both addresses, since descriptors are reused: the same number may now
-            // be a different connection.
+            // Links are identified by both addresses, since descriptors are reused: the same number
+            // may now be a different connection.
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };

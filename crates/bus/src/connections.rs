@@ -92,7 +92,7 @@ impl Open {
             .for_each(|entry| *by_address.entry(entry.from).or_insert(0) += 1);
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
-            // The address with the most connections first: a host that opens thousands evicts its
+            // Prefer the address with the most connections: a host that opens thousands evicts its
             // own connections, while a host with a single connection keeps it, however long it is
             // idle.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));

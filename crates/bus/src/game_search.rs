@@ -208,7 +208,7 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
 
 /// The sim's description of its game, once validated.
 fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
-    // The version first: if it differs, the rest may be unreadable.
+    // Check the version first: if it differs, the rest may be unreadable.
     let value: serde_json::Value = serde_json::from_slice(answer).unwrap_or_default();
     let version = value
         .get("version")

@@ -60,7 +60,8 @@ impl LinkLock {
             .mode(0o600)
             .clone();
         let mut file = options.open(path).map_err(failed)?;
-        // A system lock, not the existence of a file: it ends with its process, however that ends.
+        // Use a system lock, not the existence of a file: the lock ends with its process, however
+        // the process ends.
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {

@@ -279,8 +279,8 @@ fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result
         // zenoh would refuse the newcomer; `crate::admission` ends another connection first.
         ("transport/unicast/accept_pending", (2 * nodes).to_string()),
         ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
-        // Smaller than a leaf's: each link keeps the fragments of a message until they are
-        // complete.
+        // This limit is smaller than a leaf's: each link keeps the fragments of a message until
+        // they are complete.
         (
             "transport/link/rx/max_message_size",
             MESSAGE_MAX.to_string(),

@@ -15,9 +15,11 @@ use std::time::{Duration, Instant};
 pub struct Patience {
     /// Limit in every case.
     pub silence: Duration,
-    /// Limit if it was heard until its token disappeared: the link may only have been reopened.
+    /// Limit if the sim was heard until its token disappeared: the link may only have been
+    /// reopened.
     pub missing: Duration,
-    /// Limit if it was never heard and its token disappeared: it has died, or the link has failed.
+    /// Limit if the sim was never heard and its token disappeared: it has died, or the link has
+    /// failed.
     pub unheard: Duration,
 }
 

@@ -43,7 +43,7 @@ pub struct HelmReport {
     pub behaviours: Vec<BehaviourReport>,
     /// The helm's variables.
     pub variables: Vec<VariableReport>,
-    /// The trained policies that its behaviours query.
+    /// The trained policies that the helm's behaviours query.
     #[serde(default)]
     pub policies: Vec<PolicyReport>,
     /// The objective functions of the decision.
@@ -115,10 +115,10 @@ pub struct PolicyReport {
     pub course_deg: Option<f64>,
     /// The proposed speed, m/s.
     pub speed_m_s: Option<f64>,
-    /// The chosen option, if it chooses among options.
+    /// The chosen option, if the policy chooses among options.
     #[serde(default)]
     pub option: Option<String>,
-    /// Why it makes no proposal, if it makes none.
+    /// Why the policy makes no proposal, if it makes none.
     pub fault: Option<String>,
     /// Probability of each discrete action; empty for continuous actions.
     pub probabilities: Vec<f32>,

@@ -105,7 +105,7 @@ pub struct Imu {
 pub struct OwnBoat {
     /// Vehicle index.
     pub vehicle: VehicleId,
-    /// Navigation as measured by its sensors.
+    /// Navigation as measured by the boat's sensors.
     pub nav: Nav,
     /// Time of the last satellite fix used, ns.
     pub fix_ns: SimTime,
@@ -119,7 +119,7 @@ pub struct OwnBoat {
     pub disabled: bool,
     /// Whether the boat is outside the field.
     pub outside: bool,
-    /// Time from which it may tag again, ns.
+    /// Time from which the boat may tag again, ns.
     pub tag_ready_ns: SimTime,
 }
 
@@ -151,7 +151,7 @@ pub struct Contact {
 /// One flag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FlagView {
-    /// The vehicle that carries it, or -1 if it is at home.
+    /// The vehicle that carries the flag, or -1 if the flag is at home.
     pub carrier: i32,
 }
 

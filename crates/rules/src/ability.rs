@@ -12,7 +12,7 @@ pub struct Ability {
     pub disabled: bool,
     /// The boat is outside the field.
     pub outside: bool,
-    /// The time from which it may tag.
+    /// The time from which the boat may tag.
     pub tag_ready: SimTime,
 }
 

@@ -35,7 +35,7 @@ pub struct VehicleStanding {
     pub tagged_at: SimTime,
     /// The flag that the boat carries.
     pub carrying: Option<FlagId>,
-    /// Time from which it may tag again.
+    /// Time from which the boat may tag again.
     pub tag_ready: SimTime,
     /// Whether the boat is outside the field.
     pub outside: bool,
@@ -50,9 +50,9 @@ pub struct VehicleStanding {
 /// The standing of one flag.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlagStanding {
-    /// Its carrier; `None` if the flag is home.
+    /// The flag's carrier; `None` if the flag is home.
     pub carrier: Option<VehicleId>,
-    /// Time of its last grab or return.
+    /// Time of the flag's last grab or return.
     pub moved_at: SimTime,
 }
 

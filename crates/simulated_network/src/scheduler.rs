@@ -320,7 +320,7 @@ impl State {
     /// Ends the simulation: kills every node and clears all events.
     fn give_up(&mut self, verdict: Verdict) {
         self.verdict = verdict;
-        // Kills all nodes instead of leaving them waiting, so that their threads end and the test
+        // Kill all nodes instead of leaving them waiting, so that their threads end and the test
         // can report what they were waiting for.
         self.events.clear();
         self.starts_due = 0;

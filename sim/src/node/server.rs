@@ -367,8 +367,8 @@ impl<'w> GameServer<'w> {
             seq,
             version: ExternalOrder::VERSION,
         };
-        // The time of the answered picture: from it the gateway computes an order's age, however
-        // often the order is repeated.
+        // The gateway computes an order's age from the time of the answered picture, however often
+        // the order is repeated.
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder {
             stamp,

@@ -72,7 +72,7 @@ pub(super) fn subscribe_report(
                 what,
                 message: message.to_vec(),
             }),
-            // Count it with all other refusals, which the result and the page show.
+            // Count the message with all other refusals, which the result and the page show.
             None => others.refuse(Refusal::Garbage),
         }
     })

@@ -33,9 +33,9 @@ impl WorkingTime {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;
         if passed.saturating_sub(waited) > TURN_MAX {
-            // Ten seconds more: zenoh drops links after ten seconds of silence, and they must be
-            // reopened. A shorter lease would detect broken links sooner, but also drop suspended
-            // ones.
+            // Allow ten more seconds: zenoh drops links after ten seconds of silence, and they must
+            // be reopened. A shorter lease would detect broken links sooner, but also drop
+            // suspended ones.
             self.recovery = RECOVERY;
             return;
         }

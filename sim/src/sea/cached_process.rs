@@ -24,7 +24,7 @@ impl CachedProcess {
     pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
         let correlation = GaussMarkov::neighbour_correlation();
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
-        // A power of two, so that finding a slot takes a mask rather than a division.
+        // The length is a power of two, so that finding a slot takes a mask rather than a division.
         let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
         CachedProcess {
             process,

@@ -80,8 +80,8 @@ impl CurrentField {
             let mean_m_s = self.mean_m_s.dot(wander.toward);
             let wandering_m_s =
                 mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
-            // Clipped, not reflected: the process itself continues unbounded and stays a function
-            // of time.
+            // The speed is clipped, not reflected: the process itself continues unbounded and stays
+            // a function of time.
             let speed_m_s = wandering_m_s
                 .max(wander.speed_m_s.0)
                 .min(wander.speed_m_s.1);

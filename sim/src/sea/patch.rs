@@ -55,7 +55,7 @@ impl Patch {
 /// slope of the line that best fits sin, 3 (sin u − u cos u) / u³.
 fn fit(half_rad: f64) -> (f64, f64) {
     let u = half_rad;
-    // A series near zero, where the quotient loses its digits.
+    // Use a series near zero, where the quotient loses its digits.
     if u.abs() < 1e-4 {
         return (1.0 - u * u / 6.0, 1.0 - u * u / 10.0);
     }

@@ -116,8 +116,8 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
         // tanh is 1 to the last bit.
         return deep;
     }
-    // Eckart (1952), within 5 %, then four or five steps of Newton's method. In finite depth the
-    // dispersion relation has no closed solution.
+    // Start from Eckart (1952), within 5 %, then take four or five steps of Newton's method. In
+    // finite depth the dispersion relation has no closed solution.
     let mut k = deep / libm::tanh(deep * depth_m).sqrt();
     for _ in 0..20 {
         let tanh = libm::tanh(k * depth_m);
@@ -274,8 +274,8 @@ impl WaveField {
 
     /// The field of these components: a regular wave, or a sea measured elsewhere.
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
-        // Infinite rather than merely large: every formula above has a limit there and needs no
-        // special case.
+        // Use an infinite depth rather than a merely large one: every formula above has a limit
+        // there and needs no special case.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components
             .iter()

@@ -133,7 +133,7 @@ impl WaveResponse {
             .iter()
             .map(|wave| pressed_m(wave, boat))
             .collect();
-        // Tabulated by heading: averaging each wave over the hull is most of the work and changes
+        // Tabulate by heading: averaging each wave over the hull is most of the work and changes
         // little between ticks.
         let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else {

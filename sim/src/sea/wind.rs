@@ -102,7 +102,7 @@ impl WindField {
         self.speed_10m_m_s * libm::pow(height_m / 10.0, self.profile_exponent)
     }
 
-    /// Caches the gusts over the field at `now`. Affects only speed: [`WindField::at`] gives the
+    /// Caches the gusts over the field at `now`. This only saves time: [`WindField::at`] gives the
     /// same bits without it.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some(gusts) = &mut self.gusts {

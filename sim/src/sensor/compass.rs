@@ -87,8 +87,8 @@ impl CompassModel {
             if let Some(off_rad) = self.fault_rad(now) {
                 state.psi_rad = wrap_pi(state.psi_rad + off_rad);
             }
-            // Like a real front seat, it steers by its compass, so a deviation leads the boat
-            // astray instead of only being reported.
+            // Like a real front seat, the simulated one steers by its compass, so a deviation leads
+            // the boat astray instead of only being reported.
             state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }
         state.psi_rad

@@ -28,7 +28,7 @@ const GATEWAYS_MAX: usize = 256;
 /// Stops boats. When dropped, it closes its own paths.
 pub struct StopClient(Arc<Shared>);
 
-/// The state shared by its threads.
+/// The state shared by the client's threads.
 struct Shared {
     orders: Watched<StopOrders>,
     game: Mutex<Option<Arc<StopTopics>>>,
