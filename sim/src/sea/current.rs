@@ -113,8 +113,9 @@ impl CurrentNow<'_> {
         self.over_hull(place, Rotation::NORTH).0
     }
 
-    /// The water's velocity (m/s) at the centre of a hull, and the rotation (rad/s clockwise) felt
-    /// by a hull on this heading: the rate at which the flow across the heading grows along it.
+    /// The water's velocity (m/s) at the centre of a hull, and the rotation (rad/s clockwise)
+    /// experienced by a hull on this heading: the rate at which the flow across the heading grows
+    /// along it.
     ///
     /// The hull is assumed short compared with the curvature of the flow: for one of a tenth of an
     /// eddy's core radius, the mean over its length differs by a thousandth.

@@ -246,9 +246,9 @@ impl SurfaceRow {
 /// The surface at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// Height above the still water, m, up.
+    /// Height above still water, m.
     pub elevation_m: f64,
-    /// Its gradient: rise per metre to the north and to the east.
+    /// Gradient of the elevation: rise per metre to the north and to the east.
     pub slope: Ned,
 }
 

@@ -38,7 +38,7 @@ pub(crate) fn all() -> [Rules; 4] {
     SHIPPED.clone()
 }
 
-/// The paper's rules: grab 1, capture 2 at one's own flag, tag cooldown 10 s.
+/// The paper's rules: grab 1, capture 2 at the team's own flag, tag cooldown 10 s.
 pub(crate) fn aquaticus_2023() -> Rules {
     SHIPPED[0].clone()
 }
