@@ -107,8 +107,8 @@ const GATEWAY: Rights = Rights {
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
-// Receives everything that is published and the decisions of helms, and may stop boats like every
-// node, but may change nothing else.
+// An observer receives everything that is published and the decisions of helms. Like every node it
+// may stop boats, but it may change nothing else.
 const OBSERVER: Rights = Rights {
     publishes: &["control", "stop/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}"],

@@ -216,7 +216,7 @@ impl Zone {
         }
     }
 
-    /// Whether `at` is inside or on an edge, with a tolerance of 1 nm against rounding.
+    /// Whether `at` is inside or on an edge, with a tolerance of 1e-9 m for rounding.
     #[inline]
     pub fn contains(&self, at: Ned) -> bool {
         self.edges
