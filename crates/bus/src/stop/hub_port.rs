@@ -113,7 +113,7 @@ impl Server {
                 .for_each(|json| drop(publisher.send_json(json)));
         };
         match &request.command {
-            // This session also receives it.
+            // This session also receives the E-stop.
             GatewayCommand::Fleet(FleetCommand::EStop) => {
                 publish(control, serde_json::to_vec(&Control::EStop))
             }
