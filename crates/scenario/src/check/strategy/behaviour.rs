@@ -1,5 +1,5 @@
-//! Checks behaviours: resolves names and expressions; values already satisfy the declarations of
-//! their types.
+//! Checks behaviours: resolves names and expressions. The schema has already checked the other
+//! values.
 
 use super::scope::Scope;
 use super::variable::set;
@@ -104,7 +104,7 @@ fn one(scope: &Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> O
     })
 }
 
-/// The keys of a table with their checked values; faults are reported and omitted.
+/// A table with its values checked; faulty ones are reported and left out.
 fn checked_table(
     scope: &Scope<'_>,
     path: &str,
@@ -276,7 +276,7 @@ fn host(
     }
     let found = scope.document.resolve(&format!("{path}.host"), &host);
     let files = &scope.document.loader.files;
-    // Stored files come from a different process, whose paths this one must not run.
+    // Stored files come from a different process: never run programs at paths that they contain.
     let is_allowed = !files.is_stored();
     if is_allowed && !found.join("solution.py").is_file() && !found.is_file() {
         let expected = "expected a folder with solution.py, or that file";

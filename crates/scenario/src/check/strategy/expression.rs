@@ -37,13 +37,13 @@ struct Reader<'a, 'b> {
     scope: &'a Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
-    /// Inside `mates(...)`, where only shared variables are available.
+    /// Whether this is inside `mates(...)`, where only shared variables are available.
     among_mates: bool,
     depth: usize,
 }
 
 impl Reader<'_, '_> {
-    /// Reports a fault of a part.
+    /// Reports a fault in a part.
     fn refuse<T>(&self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("`{}` {message}", self.key);
         let diagnostics = &self.scope.document.loader.diagnostics;
