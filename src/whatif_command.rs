@@ -178,7 +178,7 @@ pub(crate) fn past_at(recording: &Recording, at_s: f64) -> Result<Past> {
     ensure!(
         at_s < end_s,
         UsageError(format!(
-            "--at is {at_s}, expected less than {end_s:.1}, where the game ended"
+            "--at is {at_s}, expected less than {end_s:.1}, when the game ended"
         ))
     );
     let decision = past.scenario.decision();

@@ -198,7 +198,7 @@ impl Process {
             let answer = answer.unwrap_or_else(|_| Answer {
                 number: self.number,
                 action: None,
-                error: Some("it wrote to the pipe of its host".to_owned()),
+                error: Some("it wrote to the pipe that carries its actions".to_owned()),
             });
             if answer.number == self.number {
                 return Ok(answer);
@@ -426,7 +426,7 @@ mod tests {
             (answer(r#"\"action\":null"#), [error("it returned no action"), error("it returned no action")]),
             (
                 "if [ $n = 2 ]; then echo '{\"number\":1,\"action\":9}'; echo '{\"number\":2,\"action\":3}'; else echo x; fi".to_owned(),
-                [error("it wrote to the pipe of its host"), Ok(Chosen::Index(3))],
+                [error("it wrote to the pipe that carries its actions"), Ok(Chosen::Index(3))],
             ),
             ("exit 1".to_owned(), [error("its process has ended"), error("its process has ended")]),
             ("exec sleep 600".to_owned(), [error(late), error(late)]),

@@ -22,11 +22,11 @@ pub enum ThrustFault {
     /// The boat's heading does not respond to the thrust difference: rate of turn in degrees/s at
     /// half of the full difference.
     #[error(
-        "the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half difference"
+        "the thrusters: the heading does not respond to differential thrust: {0:.0} degrees/s at half difference"
     )]
     NoTurn(f64),
     /// The forward speed (m/s) after 40 s under thrust is too low.
-    #[error("the thrusters: it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
+    #[error("the thrusters: the boat makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
     NoWay(f64),
     /// The boat goes astern instead of ahead, or does not turn to its ordered heading: error of its
     /// course, degrees.

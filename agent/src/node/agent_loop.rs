@@ -138,7 +138,7 @@ impl AgentLoop {
             .eq(joined.vehicles)
         {
             return Err(NodeError::Refused(
-                "it granted boats that were not requested".to_owned(),
+                "the boats that it granted differ from those requested".to_owned(),
             ));
         }
         self.ticket = joined.ticket;

@@ -111,7 +111,7 @@ impl Net {
             .filter(|keys| keys.identity != Identity::Sim)
         {
             let reason = format!(
-                "a sim needs the keys of sim, not those of {}",
+                "a sim needs the keys of the role sim, not those of {}",
                 keys.identity
             );
             return Err(BusError::Keys(format!(

@@ -212,7 +212,7 @@ impl Session for ZenohSession {
         let token = self.0.liveliness().declare_token(key.clone()).wait();
         token
             .map(Declaration::new)
-            .map_err(failed("be alive as", &key))
+            .map_err(failed("declare the liveliness token", &key))
     }
 
     fn watch_alive(&self, key: String, receive: OnToken) -> Result<Declaration, BusError> {

@@ -18,7 +18,7 @@ pub(super) fn gateway(document: &Document<Gateway>) -> Option<Gateway> {
     check_thrust_map(document, "loops.thrust_map", &raw.loops.thrust_map);
     check_geofence(document);
     if raw.protocol == BoatProtocol::Mavlink && !raw.startup_words.is_empty() {
-        let message = "startup_words are a Surveyor's, expected none with protocol = \"mavlink\"";
+        let message = "startup_words are for Surveyors, expected none with protocol = \"mavlink\"";
         document.note("startup_words", message);
     }
     document.is_faultless().then(|| raw.clone())

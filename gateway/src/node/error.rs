@@ -23,7 +23,7 @@ pub enum NodeError {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The control port cannot be opened.
-    #[error("the control port {listen}: {source}")]
+    #[error("cannot open the control port {listen}: {source}")]
     ControlPort {
         /// The address.
         listen: SocketAddr,

@@ -41,7 +41,7 @@ const WRITING_MAX: usize = 64;
 /// loop was suspended or got no processor time.
 const WAITED_MAX: Duration = Duration::from_millis(500);
 /// The reply to a request that a disarm has overtaken.
-const DISARMED: &str = "the boat has been disarmed since: repeat the request";
+const DISARMED: &str = "the boat was disarmed in the meantime: repeat the request";
 /// Time within which a recurring message is not logged again.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 

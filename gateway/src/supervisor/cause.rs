@@ -100,7 +100,7 @@ pub enum NavFault {
     #[error("the compass is off by {:.0} degrees, judged by the course over the ground", .0.abs())]
     CompassOff(f64),
     /// The reported speed is below the speed computed from positions (m/s).
-    #[error("the reported speed is lower than the speed implied by its positions, {0:.1} m/s")]
+    #[error("the reported speed is lower than the speed implied by the positions, {0:.1} m/s")]
     SpeedTooLow(f64),
 }
 

@@ -380,7 +380,7 @@ impl Shared {
         });
         if let Err(e) = asked {
             self.orders.visit(|orders| {
-                orders.sim_answered(clock::now(), stop, Err(format!("no thread: {e}")))
+                orders.sim_answered(clock::now(), stop, Err(format!("cannot start thread: {e}")))
             });
         }
     }

@@ -75,7 +75,7 @@ impl HubStopPort {
             if bound.is_empty() {
                 let missed = missed.into_iter().find_map(Result::err);
                 return Err(failed(
-                    missed.unwrap_or_else(|| std::io::Error::other("it has no address")),
+                    missed.unwrap_or_else(|| std::io::Error::other("host has no address")),
                 ));
             }
             for socket in bound.into_iter().flatten() {

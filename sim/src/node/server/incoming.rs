@@ -283,8 +283,7 @@ impl GameServer<'_> {
     fn reset(&mut self, seed: u64) -> ControlReply {
         if self.recorder.is_some() || !self.external_orders.is_empty() {
             return Err(
-                "a game with a recording or real boats cannot be reset: start another one"
-                    .to_owned(),
+                "a game with a recording or real boats cannot be reset: start a new one".to_owned(),
             );
         }
         let next = self.contest.restarted(self.scenario, seed);

@@ -210,7 +210,7 @@ fn sets(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<O
 fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
     let has_options = model.spec.action == ActionSpace::Options;
     let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
-        let why = "it chooses among options, expected `sets` with the variable that receives them";
+        let why = "it chooses among options, expected `sets` with a variable for its choice";
         return has_options.then(|| why.to_owned());
     };
     let VariableKind::Text(texts) = &variable.kind else {

@@ -149,7 +149,7 @@ impl Reader<'_, '_> {
 
     fn refuse_to_mates<T>(&self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
         let message =
-            format!("uses {name} in mates(), which is {what}, expected a shared variable");
+            format!("uses {name} in mates(), but {name} is {what}; expected a shared variable");
         self.refuse(part, &message)
     }
 
