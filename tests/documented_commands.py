@@ -65,7 +65,7 @@ SERVES = {
     r"squall gateway sitl .*": "firmware at",
 }
 
-# Commands that need another one beside them.
+# Commands that need a second one running beside them.
 GAME = "squall run surveyor_2v2 --pace realtime --no-record"
 BESIDE = {
     r"squall agent --game dock .*": "squall sim my_game --game dock --pace realtime",

@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             }
             for (boat, first, count) in faults {
                 if args.for_parent {
-                    // The parent adds it to the game's result.
+                    // The parent adds these faults to the game's result.
                     let faults = EntryFaults { boat, first, count };
                     screen::print(&(serde_json::json!(faults).to_string() + "\n"));
                 } else {

@@ -42,7 +42,8 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
         let max_m = self.task.cpa_max_m.value(situation).max(min_m);
         let horizon_s = self.task.time_on_leg_s.value(situation);
         let obstacles = &situation.model.field.plan.obstacles;
-        // Only once: obstacles do not move, and the half planes around a polygon are expensive.
+        // Compute the outlines only once: obstacles do not move, and the half planes around a
+        // polygon are expensive.
         if self.outlines.is_empty() {
             let corners = |obstacle: &Obstacle| match obstacle {
                 Obstacle::Circle { .. } => Outline::new(&[]),

@@ -19,7 +19,7 @@ pub(super) struct Outline {
     sides: Vec<Side>,
     /// Half planes that contain the polygon.
     half_planes: Vec<HalfPlane>,
-    /// The half planes in which the boat is not.
+    /// The half planes that do not contain the boat.
     facing: Vec<HalfPlane>,
     /// Where the current run passes each corner.
     feet: Vec<Foot>,
@@ -67,7 +67,7 @@ impl Places {
         }
     }
 
-    /// The places after this time at a velocity.
+    /// The places reached after this time at a velocity.
     #[inline(always)]
     fn after(&self, along: &Places, after_s: &Lanes<f64>) -> Places {
         let mut places = *self;
@@ -116,8 +116,8 @@ impl Outline {
         let mut half_planes: Vec<HalfPlane> = Vec::new();
         for side in &sides {
             let unit = side.along.scaled(side.per_m2.sqrt());
-            // A half plane that contains all corners is a valid bound, on whichever side of the
-            // line through a side it lies, even for a concave polygon.
+            // A half plane that contains all corners is a valid bound, whichever way it faces from
+            // the line through the side, and even for a concave polygon.
             for out in [1.0, -1.0] {
                 let normal = Ned {
                     north: out * unit.east,
@@ -268,8 +268,8 @@ impl Kernel for Passes<'_> {
 
     #[inline(always)]
     fn run(mut self) {
-        // Inside there is no distance to keep: all courses are equally bad, and other behaviours
-        // decide how to get out.
+        // Inside the polygon there is no distance to keep: all courses are equally bad, and other
+        // behaviours decide how to get out.
         if is_within(&self.outline.corners, self.at) {
             for k in 0..self.grid.courses() {
                 self.table.lowered_mut(k).fill(Lanes::splat(0.0));
@@ -335,8 +335,8 @@ impl Passes<'_> {
             if last < 100.0 {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
-                // By ascending speed: first the speeds that come no nearer than the turn, then the
-                // computed ones, then the last value for all higher speeds.
+                // Fill the row by ascending speed: first the speeds that come no nearer than the
+                // turn, then the computed ones, then the last value for all higher speeds.
                 let known = std::iter::repeat_n(before.0[i], least);
                 let known = known.chain(
                     self.outline

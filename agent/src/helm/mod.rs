@@ -31,7 +31,7 @@ use steadiness::Steadiness;
 struct BehaviourInstance {
     run: BehaviourRun,
     logic: Box<dyn BehaviourLogic>,
-    /// Its weight at the last decision; 0 if it did not run.
+    /// The behaviour's weight at the last decision; 0 if the behaviour did not run.
     weight: f64,
 }
 
@@ -101,7 +101,7 @@ impl HelmMind {
         let mut helm = HelmMind::new(scenario, vehicle, program);
         let is_killed =
             |fault: &Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
-        // Only if a fault requires it: in a fleet, a copy of the scenario for each boat would be
+        // Keep the scenario only if a fault requires it: in a fleet, a copy for each boat would be
         // too expensive.
         if scenario.faults.iter().any(is_killed) {
             let scenario = scenario.clone();
@@ -265,10 +265,10 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        // A fraction of the weights, at most a tenth (checked when the file is loaded): it can
-        // delay a change of mind, but not outweigh safety. Edges do not count: they do not move, so
-        // noise causes no changes of mind near them, and counting them would keep a boat there that
-        // is needed elsewhere.
+        // The bonus is a fraction of the weights, at most a tenth (checked when the file is
+        // loaded): it can delay a change of mind, but not outweigh safety. Edges do not count: they
+        // do not move, so noise causes no changes of mind near them, and counting them would keep a
+        // boat there that is needed elsewhere.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,

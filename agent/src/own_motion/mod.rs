@@ -24,7 +24,7 @@ use std::f64::consts::PI;
 /// a turn.
 const TURN_MAX_RAD: f64 = 2.6;
 /// A point boat whose thrust follows the order brakes fully if the order is lower than its speed by
-/// at least the loss of speed in this time, s.
+/// at least the speed that it can lose in this time, s.
 const BRAKES_S: f64 = 1.0;
 /// Turn angle from which a point boat is ordered more than its current speed, to have thrust for
 /// turning, and the angle from which it is ordered full speed, rad.
@@ -105,7 +105,8 @@ impl OwnMotion {
         }
         // A repeated velocity carries no new information.
         if own.fix_ns > self.fix_at {
-            // At most a second: after a gap in navigation, one velocity must not count as several.
+            // Count at most a second: after a gap in navigation, one velocity must not count as
+            // several.
             self.drift.observe(
                 &own.nav,
                 &self.file,
@@ -351,8 +352,8 @@ mod tests {
             ("large_usv_kinematic", 6.0, 0.1, 0.3, 5.5),
             ("large_usv_kinematic", 6.0, 0.1, 7.0, 7.0),
             ("surveyor_kinematic", 2.0, 0.1, 0.3, 0.3),
-            // It would cut its thrust, and with it the effect of its rudder, until it has slowed
-            // down.
+            // Otherwise the boat would cut its thrust, and with it the effect of its rudder, until
+            // it has slowed down.
             ("surveyor_kinematic", 1.0, 2.0, 0.3, 2.5),
             ("surveyor_kinematic", 2.0, 2.0, 0.3, 3.0),
             ("surveyor_kinematic", 0.0, 0.675, 0.1, 0.75),

@@ -25,7 +25,7 @@ fn here() -> Picture {
     alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
 }
 
-/// The same with one contact; all other boats are far away.
+/// Like [`here`], with one contact; all other boats are far away.
 fn with_contact(own: Boat, contact: Boat) -> Picture {
     picture(
         0.0,
@@ -47,7 +47,7 @@ fn boat(text: &str) -> Boat {
     }
 }
 
-/// Whether a decision has the expected course and speed, or there is none as expected.
+/// Whether a decision is as expected: a course and a speed, or none.
 fn is_wanted(report: &HelmReport, want: &str) -> bool {
     match report
         .course_deg
@@ -180,7 +180,7 @@ fn a_loiter_goes_round_the_way_it_is_told() {
 #[test]
 fn a_loiter_goes_all_the_way_round() {
     let ring = "kind = 'loiter'\nellipse = { centre = [0, 0], along_m = 60, across_m = 30 }\nturn = 'clockwise'\nspeed_m_s = 2";
-    // It turns at once.
+    // The boat turns at once.
     let track = driven(
         ring,
         Boat::at(0.0, 15.0).going(90.0, 2.0),
@@ -209,7 +209,7 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
         let behaviour = format!(
             "kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'"
         );
-        // Beyond its own side, where no boat can be tagged.
+        // The contact is beyond the boat's own side, where no boat can be tagged.
         let report = alone_decides(
             &behaviour,
             &with_contact(Boat::at(10.0, 0.0), Boat::at(10.0, distance_m)),

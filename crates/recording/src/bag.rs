@@ -26,7 +26,7 @@ pub enum RecordingError {
         /// The system's error.
         reason: std::io::Error,
     },
-    /// A MOOS log is invalid; with file and line.
+    /// An invalid MOOS log, with file and line.
     #[error("{0}")]
     Log(String),
     /// The file can no longer be read.

@@ -35,8 +35,8 @@ pub(crate) struct Extent {
 }
 
 /// Calls `take` with every schema, channel, message and metadata record, including those in chunks.
-/// A message is passed as its header and the byte range of its content; every record with the start
-/// of its chunk, or 0. A damaged chunk is read up to the first invalid record.
+/// A message is passed as its header and the byte range of its content. The last argument is the
+/// start of the record's chunk, or 0. A damaged chunk is read up to the first invalid record.
 pub(crate) fn for_each_record(
     source: &Source,
     mut take: impl FnMut(Record<'_>, Range<u64>, u64),

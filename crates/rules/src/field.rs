@@ -72,7 +72,7 @@ pub enum Walls {
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Its position when no boat carries it.
+    /// The flag's position when no boat carries it.
     pub home: Ned,
 }
 
@@ -216,7 +216,7 @@ impl Zone {
         }
     }
 
-    /// Whether `at` is inside or on an edge, with a tolerance of 1 nm against rounding.
+    /// Whether `at` is inside or on an edge, with a tolerance of 1e-9 m for rounding.
     #[inline]
     pub fn contains(&self, at: Ned) -> bool {
         self.edges

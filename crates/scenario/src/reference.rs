@@ -41,8 +41,8 @@ struct Section {
     text: String,
 }
 
-/// Collects the section of the keys at `path`, already described as `said`, and those of the tables
-/// in it. Equal tables share a section.
+/// Collects the section for the keys at `path`, described as `said` in the table above, and the
+/// sections for nested tables. Equal tables share a section.
 fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said): (&Value, &str)) {
     let mut text = in_a_line(about.get(TABLE).unwrap_or(&about["description"]));
     text = if text.is_empty() || text == said {
@@ -249,7 +249,7 @@ pub fn meaning(key: &str) -> Option<String> {
     (!meaning.is_empty()).then(|| meaning.to_owned())
 }
 
-/// The schema of a key of a table: one of its own keys, any name, or a key of one kind of table.
+/// The schema of a key of a table: one of its own keys, any name, or a key of one of its kinds.
 fn key_in<'a>(about: &'a Value, key: &str) -> Option<&'a Value> {
     let named = || Some(&about["additionalProperties"]).filter(|named| named.is_object());
     let mut kinds = entries(about, "oneOf").chain(entries(about, "anyOf"));
@@ -295,7 +295,7 @@ fn is_pair(about: &Value) -> bool {
     about["minItems"] == 2 && about["maxItems"] == 2 && about["items"].get("properties").is_none()
 }
 
-/// The allowed values, in plain language; a range alone is that of a number.
+/// The allowed values, in plain language; for numbers, the range alone.
 fn value_of(about: &Value) -> String {
     if let Some(choices) = about["oneOf"].as_array() {
         return choices.iter().map(choice).collect::<Vec<_>>().join(", ");

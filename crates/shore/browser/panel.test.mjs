@@ -1,4 +1,4 @@
-// The side panel of the page: the rose is fully visible, events fold, and the lists are correct.
+// The side panel of the page: the rose is fully visible, events can be folded, and the lists are correct.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -115,7 +115,7 @@ test('a line of the list shows heading, speed with its curve, mode and carried f
   await game.until('modes are shown', () => [...document.querySelectorAll('.boat-row .state')].every((each) => each.textContent !== ''));
 });
 
-/** How dark a team's ink is around a boat: the sum over a small square of the boats' layer. */
+/** The amount of a team's colour around a boat: the sum over a small square of the boats' layer. */
 const INK = (name) => {
   const hull = squall.hulls.find((each) => each.name === name);
   const ratio = Math.min(2, devicePixelRatio);

@@ -42,9 +42,10 @@ pub struct Mistake {
 }
 
 impl Sheet {
-    /// Reads a file whose name in messages is `file`.
+    /// Reads a file; `file` is its name in messages.
     ///
-    /// # Errors If it is not a table, has no rows, or has two columns with the same name.
+    /// # Errors
+    /// If it is not a table, has no rows, or has two columns with the same name.
     pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
         let mut bytes = vec![];
         let whole = |message| Mistake {
@@ -244,7 +245,7 @@ impl Sheet {
     /// The times in column `t_s`, strictly increasing, from 0 to `high_s`.
     ///
     /// # Errors
-    /// If they do not satisfy this.
+    /// If they are not strictly increasing, or out of this range.
     pub fn times(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
         self.times_from(high_s, |_| 0.0)
     }

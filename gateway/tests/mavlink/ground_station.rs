@@ -1,5 +1,5 @@
 //! An emulated ArduPilot boat and ground stations other than ours: every request is answered as
-//! Rover would.
+//! Rover would answer it.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 
@@ -185,7 +185,7 @@ fn every_request_of_a_ground_station_gets_its_reply() {
 #[test]
 fn the_old_requests_for_fences_and_rally_points_get_a_reply() {
     // FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT, RALLY_FETCH_POINT: number, CRC_EXTRA, length and
-    // place of the target system, as in pymavlink's ardupilotmega.
+    // offset of the target system, as in pymavlink's ardupilotmega.
     for (id, extra_crc, len, target_at) in [
         (160, 78, 12, 8),
         (161, 68, 3, 0),
@@ -225,7 +225,8 @@ const RESULTS: [(u16, [f32; 2], u8); 18] = [
         [60_000.0, 1e6],
         2,
     ),
-    // An interval below -1, a mode without the flag that it is ArduPilot's, and neither 0 nor 1.
+    // An interval below -1, a mode without the custom-mode flag, and an arming value other than 0
+    // or 1.
     (MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16, [33.0, -2.0], 2),
     (MavCmd::MAV_CMD_DO_SET_MODE as u16, [8.0, 15.0], 2),
     (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16, [0.5, 0.0], 3),
@@ -238,7 +239,7 @@ const RESULTS: [(u16, [f32; 2], u8); 18] = [
         [-1.0, 0.0],
         2,
     ),
-    // Not in Rover's default build, and a rate that its loop cannot reach.
+    // A command that is not in Rover's default build, and a rate that its loop cannot reach.
     (MavCmd::MAV_CMD_NAV_SET_YAW_SPEED as u16, [90.0, 1.0], 3),
     (MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16, [33.0, 1e4], 2),
 ];
@@ -424,7 +425,7 @@ fn a_new_system_number_takes_effect_after_the_reply_to_it() {
         "{:?}",
         station.systems
     );
-    // Orders to the old number are for a different boat.
+    // Commands to the old system number are for a different boat.
     assert_eq!(
         station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]),
         None

@@ -21,7 +21,7 @@ pub enum Control {
     Helm(Box<Strategy>),
 }
 
-/// A strategy that plays in place of the policy, as its model to imitate.
+/// A strategy that plays in place of the policy, for the policy to imitate.
 #[derive(Clone, Debug)]
 pub struct Teacher {
     /// The strategy.
@@ -130,7 +130,7 @@ pub enum SetupError {
     NoStart(#[from] sim::NoStart),
 }
 
-/// The error of a field with an invalid value.
+/// The error for a field with an invalid value.
 pub(crate) fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError {
     SetupError::Field {
         field,

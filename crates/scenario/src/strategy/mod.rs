@@ -319,7 +319,7 @@ pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
         all.find(|variant| variant.name() == name)
     }
 
-    /// All names, in the same order.
+    /// All names, in the order of [`Named::all`].
     fn names() -> Vec<&'static str> {
         Self::all().iter().map(|variant| variant.name()).collect()
     }

@@ -375,9 +375,9 @@ pub struct OpRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BeyondHalt {
-    /// It returns.
+    /// The boat returns.
     ComesBack,
-    /// It stops its thrusters and drifts until recovered, as in MOOS-IvP.
+    /// The boat stops its thrusters and drifts until recovered, as in MOOS-IvP.
     Stops,
 }
 

@@ -168,7 +168,7 @@ impl<'a> Problem<'a> {
         let correction = |border: &[usize]| {
             let columns = by_starts.rows(border[0], border[1] - border[0]);
             let mut normal = columns.tr_mul(&columns);
-            // So small that it matters only for a channel without information.
+            // This is so small that it matters only for a channel without information.
             (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1e-9);
             Some(
                 normal
