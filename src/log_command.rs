@@ -51,8 +51,8 @@ pub(crate) struct Args {
     /// edges, contacts and circling
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare"])]
     quality: bool,
-    /// Finds the moments that most changed the chance of winning, and how much each boat contributed,
-    /// by simulating many futures of the game. Takes about a minute on two cores
+    /// Finds the moments that most changed the chance of winning, and how much each boat
+    /// contributed, by simulating many futures of the game. Takes about a minute on two cores
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare", "quality"])]
     turning_points: bool,
     /// With --turning-points: total number of simulated futures

@@ -1,4 +1,5 @@
-//! Positions on the globe, and velocities over the ground: to the field's plane and the boat's axes.
+//! Positions on the globe, and velocities over the ground: to the field's plane and the boat's
+//! axes.
 
 use gateway::geodesy::LocalFrame;
 use primitives::LatLon;

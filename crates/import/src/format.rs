@@ -8,7 +8,7 @@ use std::path::Path;
 /// Number of bytes read to recognise a format.
 const HEAD: u64 = 4096;
 /// UNIX times that a log can have, µs: from 2000 to 2100.
-const TIMES_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
+pub(crate) const TIMES_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
 /// The first bytes of frames of MAVLink 1 and 2.
 const MAVLINK_STARTS: [u8; 2] = [0xFE, 0xFD];
 

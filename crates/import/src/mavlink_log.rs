@@ -1,5 +1,6 @@
 //! MAVLink: telemetry logs (`.tlog`), in which each frame follows its UNIX time.
 
+use crate::format::TIMES_US;
 use crate::servo::Servos;
 use crate::{Found, ImportError, Quantity, bytes_of};
 use gateway::mavlink::dialect::MavMessage;
@@ -23,13 +24,15 @@ pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<Found, ImportError
     let mut framer = Framer::new();
     let (mut rest, mut skipped) = (&bytes[..], 0_u64);
     while let Some((time, frame)) = rest.split_first_chunk() {
-        let Some(length) = frame_length(frame) else {
+        let time_us = u64::from_be_bytes(*time);
+        let length = frame_length(frame).filter(|_| TIMES_US.contains(&time_us));
+        let Some(length) = length else {
             // Not a frame here: try at the next byte.
             skipped += 1;
             rest = &rest[1..];
             continue;
         };
-        let at_s = 1e-6 * u64::from_be_bytes(*time) as f64;
+        let at_s = 1e-6 * time_us as f64;
         let (frame, after) = frame.split_at(length.min(frame.len()));
         framer.interrupt();
         framer.push(frame, &mut |received| {

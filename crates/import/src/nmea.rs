@@ -1,5 +1,5 @@
-//! Logs of NMEA 0183 sentences. The time is that of the receiver, if a line begins with one, or else
-//! that of the last sentence with a time.
+//! Logs of NMEA 0183 sentences. The time is that of the receiver, if a line begins with one, or
+//! else that of the last sentence with a time.
 
 use crate::csv::time_of;
 use crate::{Found, ImportError, Quantity, bytes_of};

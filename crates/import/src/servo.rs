@@ -24,8 +24,8 @@ impl Servos {
     }
 
     /// Commanded thrust of the left and the right thruster, per cent, from the outputs in order;
-    /// `None` if the boat does not steer by its thrust. Without parameters, the outputs are 1 and 3,
-    /// as by default in Rover.
+    /// `None` if the boat does not steer by its thrust. Without parameters, the outputs are 1 and
+    /// 3, as by default in Rover.
     pub(crate) fn thrusts_pct(&self, outputs: &[u16]) -> Option<[f64; 2]> {
         let output_of = |function, default| {
             if !self.are_known() {

@@ -1,6 +1,6 @@
-//! Logs written by other programs: the recorder of `rosbags`, the writer of `mcap` (Python), `pymavlink`, and the
-//! firmware ArduPilot Rover. All except the firmware's show one boat on a circle of 40 m at 2 m/s to starboard, from
-//! north, from 2026-05-01 12:00 UTC for 20 s.
+//! Logs written by other programs: the recorder of `rosbags`, the writer of `mcap` (Python),
+//! `pymavlink`, and the firmware ArduPilot Rover. All except the firmware's show one boat on a
+//! circle of 40 m at 2 m/s to starboard, from north, from 2026-05-01 12:00 UTC for 20 s.
 
 use import::{Format, Imported, Input, Map, Quantity};
 use primitives::LatLon;

@@ -198,8 +198,8 @@ impl Bag {
         })
     }
 
-    /// Calls `take` with the topic, schema, recording time (ns) and content of every ROS 2 message in
-    /// an MCAP file of another program, such as rosbag2.
+    /// Calls `take` with the topic, schema, recording time (ns) and content of every ROS 2 message
+    /// in an MCAP file of another program, such as rosbag2.
     ///
     /// # Errors
     /// [`RecordingError`] if it cannot be read or is not an MCAP file.

@@ -88,6 +88,10 @@ fn expand(
         ))
     };
     let numbers = source.read(chunk.start..chunk.start + CHUNK_NUMBERS)?;
+    let stated = source
+        .array(chunk.start + 16)?
+        .map_or(0, u64::from_le_bytes);
+    let room = room.min(stated);
     let from = chunk.start + CHUNK_NUMBERS + 4 + name.len() as u64 + 8;
     let packed = source.read(from.min(chunk.end)..chunk.end)?;
     let mut records = Vec::new();
@@ -110,7 +114,11 @@ fn expand(
     };
     let length = result.map_err(|e| damaged(&e))? as u64;
     if length > room {
-        return Err(too_long());
+        return Err(if stated == room {
+            damaged(&format_args!("longer than the stated {stated} bytes"))
+        } else {
+            too_long()
+        });
     }
     out.push(op::CHUNK);
     out.extend((CHUNK_NUMBERS + 4 + 8 + length).to_le_bytes());

@@ -79,8 +79,8 @@ pub struct Logs {
 }
 
 impl Logs {
-    /// Adds a value of a boat, of a team, or of the game. If a quantity has several sources, the one
-    /// with the lowest number is used.
+    /// Adds a value of a boat, of a team, or of the game. If a quantity has several sources, the
+    /// one with the lowest number is used.
     pub fn push(&mut self, whose: &str, quantity: Quantity, source: u8, (at_s, value): (f64, f64)) {
         let known = self.values.entry(whose.to_owned()).or_default();
         known

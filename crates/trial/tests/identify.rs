@@ -53,8 +53,8 @@ fn orders_csv(stream: &mut Stream) -> String {
     text + "245,0,0\n"
 }
 
-/// A log of `boat` under those commands, with `noise` times [`NOISE`], whose correlation from one row
-/// to the next is `correlation`.
+/// A log of `boat` under those commands, with `noise` times [`NOISE`], whose correlation from one
+/// row to the next is `correlation`.
 fn log_csv(
     boat: &Boat,
     orders_csv: &str,
