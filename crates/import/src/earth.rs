@@ -3,7 +3,7 @@
 
 use gateway::geodesy::LocalFrame;
 use primitives::LatLon;
-use primitives::math::{atan2, sin_cos_deg};
+use primitives::math::{atan2, length, sin_cos_deg};
 use recording::logs::{Logs, Quantity};
 
 /// Speed below which the course over ground says nothing about the heading, m/s.
@@ -79,7 +79,7 @@ pub(crate) fn resolve_motion(logs: &mut Logs) -> Vec<String> {
             let north = logs.series(&boat, Quantity::North).cloned();
             for (at_s, north) in north.into_iter().flatten() {
                 let east = logs.at(&boat, Quantity::East, at_s).unwrap_or(0.0);
-                if north.hypot(east) > COURSE_MIN_M_S {
+                if length(north, east) > COURSE_MIN_M_S {
                     let course_deg = atan2(east, north).to_degrees();
                     logs.push(&boat, Quantity::Heading, u8::MAX, (at_s, course_deg));
                 }
