@@ -30,7 +30,7 @@ fn logs_of_two_boats_are_replayed_as_one_game() {
         summary.contains("recorded 2026-05-01 12:00:00 UTC by other programs"),
         "{summary}"
     );
-    assert!(summary.contains("red_one                40"), "{summary}");
+    assert!(summary.contains("red_one           40"), "{summary}");
     let listed = program::printed(dir.path(), &["runs"]);
     assert!(listed.contains("unknown : unknown"), "{listed}");
     // A second import does not overwrite the first.
@@ -55,7 +55,7 @@ fn a_boat_is_fitted_to_a_log_of_the_firmware() {
             "--segment-s",
             "3",
             "--fit",
-            "lag",
+            "yaw_linear",
         ],
     );
     assert!(
