@@ -35,7 +35,7 @@ pub struct Plan<E = f64> {
     /// Extent from end to end, m.
     #[schemars(range(min = 10, max = 20000))]
     pub width_m: f64,
-    /// Extent across, m.
+    /// Size across the field, m.
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
     /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width /

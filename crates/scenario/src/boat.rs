@@ -35,7 +35,7 @@ pub struct Boat {
     pub sensors: Sensors,
 }
 
-/// The behaviour of a boat without an order, out of action, or on a hold order.
+/// What a boat does without an order, while out of action, or on a hold order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Hold {
@@ -120,10 +120,10 @@ pub struct Kinematic {
     #[schemars(description = "Turn bias, degrees/s.")]
     #[schemars(rename = "rotate_deg_s", range(min = -90, max = 90), extend("default" = 0, "x-field" = "rotate_rad_s"))]
     pub rotate_rad_s: f64,
-    /// Acceleration limit, m/s², of which the boat uses half; 0: no limit.
+    /// Acceleration limit, m/s²; the boat achieves half of it; 0: no limit.
     #[schemars(range(min = 0, max = 100), extend("default" = 0))]
     pub acceleration_max_m_s2: f64,
-    /// Deceleration limit, m/s², of which the boat uses half; 0: no limit.
+    /// Deceleration limit, m/s²; the boat achieves half of it; 0: no limit.
     #[schemars(range(min = 0, max = 100), extend("default" = 0.5))]
     pub deceleration_max_m_s2: f64,
     /// Thrust per desired speed, % per m/s; 0: use `speed_pid`.

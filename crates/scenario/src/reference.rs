@@ -151,7 +151,7 @@ fn names(page: &mut String) {
             let _ = writeln!(page, "| `{}` | {} |", fact.name(), line(fact.meaning()));
         }
     }
-    page.push_str("\n### Measures\n\nOf a place or boat.\n");
+    page.push_str("\n### Measures\n\nProperties of a place or boat.\n");
     for (is_truth, kind) in [(true, "truth"), (false, "number")] {
         let _ = write!(page, "\n| {kind} | meaning |\n|---|---|\n");
         for measure in Measure::all()
@@ -168,7 +168,7 @@ fn names(page: &mut String) {
             let _ = writeln!(page, "| `{name}(place)`{two} | {meaning} |");
         }
     }
-    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of these: of several, the nearest.\n");
+    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of the following; if there are several, the nearest.\n");
     page.push_str("\n| place | meaning |\n|---|---|\n");
     for mark in Mark::all() {
         let _ = writeln!(page, "| `{}` | {} |", mark.name(), line(mark.meaning()));
@@ -349,14 +349,13 @@ fn kind_of(about: &Value) -> String {
         return title.to_owned();
     }
     match about["anyOf"][0]["type"].as_str() {
-        Some("array") => return "pair or text".to_owned(),
-        Some(_) => return "number, boolean or text".to_owned(),
+        Some("array") => return "pair or string".to_owned(),
+        Some(_) => return "number, boolean or string".to_owned(),
         None => {}
     }
     match about["type"].as_str().unwrap_or_default() {
         "string" if about.get("const").is_some() => "one of those below".to_owned(),
         "string" if about["x-expected"] == "the path of a file" => "path".to_owned(),
-        "string" => "text".to_owned(),
         "object" => "table".to_owned(),
         name => name.to_owned(),
     }

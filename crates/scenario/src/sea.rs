@@ -197,7 +197,7 @@ pub struct Eddy {
     /// Centre, [x, y] in m from the datum.
     #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)), extend("x-field" = "centre"))]
     pub centre: Ned,
-    /// Core radius, m; the flow is fastest at 1.121 times this.
+    /// Core radius, m; the flow is fastest at 1.121 times this radius.
     #[schemars(range(min = 1, max = 1000))]
     pub radius_m: f64,
     /// Maximum flow, m/s; positive is clockwise.

@@ -45,7 +45,7 @@ pub struct Gateway {
     pub nav: NavWatch,
     /// The area that the boat must not leave.
     pub geofence: Geofence,
-    /// The box ahead in which another real boat stops this one.
+    /// The box ahead of the boat; another real boat inside it stops this one.
     pub halt: Halt,
     /// Low battery.
     pub battery: BatteryWatch,
@@ -182,7 +182,7 @@ pub struct Limits {
     /// Maximum thrust difference, %.
     #[schemars(range(min = 1, max = 100), extend("default" = 50))]
     pub difference_max_pct: f64,
-    /// Maximum increase of either, %/s; decreases are immediate.
+    /// Maximum rate of increase of thrust and difference, %/s; decreases are immediate.
     #[schemars(range(min = 1, max = 10000), extend("default" = 100))]
     pub slew_pct_s: f64,
 }
@@ -312,8 +312,8 @@ pub struct FailsafeActions {
     /// The gateway hung.
     #[schemars(extend("default" = "standby"))]
     pub hung: FailsafeAction,
-    /// Time after a failsafe for lack of fresh orders within which the boat arms itself again, once
-    /// orders have been fresh for 1 s and it is ready, s; 0: never.
+    /// After a failsafe for lack of fresh orders: time within which the boat may rearm itself, s,
+    /// once orders have been fresh for 1 s and the boat is ready; 0: never.
     #[schemars(range(min = 0, max = 600), extend("default" = 0))]
     pub rearm_within_s: f64,
 }
@@ -334,7 +334,7 @@ pub enum FailsafeAction {
 /// How the gateway verifies that it controls the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlWatch {
-    /// Assume control, for boats that never report it.
+    /// Whether to assume control, for boats that never report it.
     #[schemars(extend("default" = false))]
     pub assumed: bool,
     /// Maximum age of the boat's report of who is in control, s.

@@ -19,7 +19,7 @@ pub struct Axis {
     /// Levels: numbers, strings or files, all of one type.
     #[schemars(length(max = 1000))]
     pub values: Vec<AxisValue>,
-    /// From and to; uniform in a sampled design.
+    /// Lower and upper limit; uniform in a sampled design.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub range: Option<[f64; 2]>,
     /// Whether the levels of a range are spaced logarithmically.

@@ -59,8 +59,8 @@ pub struct Setup {
     pub decisions_per_step: u32,
     /// Maximum number of steps of an episode. `None`: until the game is over.
     pub steps_max: Option<u32>,
-    /// The number of different starts, which repeat. The slowest part of a new game, creating sea
-    /// and boats, is done once per start. `None`: every game has a new start.
+    /// The number of different starts, used in rotation. The slowest part of a new game, creating
+    /// sea and boats, is done once per start. `None`: every game has a new start.
     pub starts: Option<u32>,
     /// The learning team. `None`: alternates with the seed.
     pub learner: Option<TeamId>,

@@ -99,7 +99,7 @@ pub struct Potential {
     /// capture place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub attack: f64,
-    /// Negative, for a tagged boat: this much per field's width from its untag place.
+    /// For a tagged boat: minus this much per field width of distance from its untag place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub untag: f64,
 }

@@ -23,7 +23,7 @@ pub struct Policy {
     #[schemars(with = "Option<String>", extend("x-expected" = "the name of a string variable"))]
     pub sets: Option<u16>,
     /// Whether to sample actions from the model's probabilities, using the game's seed, instead of
-    /// taking the likeliest. Only for models with logits.
+    /// taking the most likely action. Only for models with logits.
     #[serde(default)]
     pub sampled: bool,
     /// Whether the model's actions are the boat's orders, as in Pyquaticus. Modes, rules and other
