@@ -16,10 +16,6 @@ const SIGNED: u8 = 1;
 // Any sender on the link can choose numbers: the table must not grow with them.
 const UNKNOWN_MAX: usize = 64;
 
-/// Requests of ArduPilot's own dialect that need a reply, although this program cannot read them:
-/// FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT and RALLY_FETCH_POINT. Number and CRC_EXTRA byte.
-const REQUESTS: [(u32, u8); 4] = [(160, 78), (161, 68), (175, 138), (176, 234)];
-
 /// A message and its sender.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Received {
@@ -31,8 +27,7 @@ pub struct Received {
     pub message: MavMessage,
 }
 
-/// A message with a valid checksum that the dialect cannot express, because it or one of its values
-/// is unknown.
+/// A message with a valid checksum and a value that the dialect does not know.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unreadable {
     /// The system that sent it.
@@ -140,11 +135,7 @@ impl Layout {
 
     /// The CRC_EXTRA byte of the message, if known.
     fn extra_crc(&self) -> Option<u8> {
-        let request = REQUESTS.iter().find(|(id, _)| *id == self.id);
-        request.map(|(_, extra_crc)| *extra_crc).or_else(|| {
-            let message = MavMessage::default_message_from_id(self.id);
-            message.map(|_| MavMessage::extra_crc(self.id))
-        })
+        MavMessage::default_message_from_id(self.id).map(|_| MavMessage::extra_crc(self.id))
     }
 
     fn has_right_checksum(&self, frame: &[u8]) -> bool {
