@@ -59,7 +59,7 @@ fn a_boat_is_fitted_to_a_log_of_the_firmware() {
         ],
     );
     assert!(
-        fitted.contains("rover.bin: 600 values in 3 segments"),
+        fitted.contains("rover.bin: 594 values in 3 segments"),
         "{fitted}"
     );
     assert!(
