@@ -266,13 +266,13 @@ impl HelmMind {
             Decided::Hold(_) => None,
         };
         // A fraction of the weights, at most a tenth (checked when the file is loaded): it can
-        // delay a change of mind, but not outweigh safety. Edges do not count: they do not move, so
-        // noise causes no changes of mind near them, and counting them would keep a boat there that
-        // is needed elsewhere.
+        // delay a change of mind, but not outweigh safety. Edges and obstacles do not count: they do
+        // not move, so noise causes no changes of mind near them, and counting them would keep a
+        // boat there that is needed elsewhere.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,
-                Task::OpRegion(_)
+                Task::OpRegion(_) | Task::AvoidObstacle(_)
             )
         };
         let weights: f64 = self
