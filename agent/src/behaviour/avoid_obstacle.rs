@@ -10,7 +10,7 @@ use primitives::angle::wrap_pi;
 use primitives::instructions::Instructions;
 use primitives::{Ned, SimTime};
 use rules::field::Obstacle;
-use scenario::strategy::AvoidObstacle;
+use scenario::strategy::{AvoidObstacle, NEAREST_MAX};
 use std::f64::consts::PI;
 
 /// Time for which a boat must stand still against its orders to count as stopped by an obstacle, s.
@@ -101,8 +101,8 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
                     at: centre,
                     velocity: Ned::default(),
                 };
-                // A circle counts as a stationary contact that own ship touches at this radius, so the
-                // closed form applies. Polygons have no closed form and need a table.
+                // A circle counts as a stationary contact that own ship touches at this radius, so
+                // the closed form applies. Polygons have no closed form and need a table.
                 let limits_m = (min_m, max_m);
                 let function = keep_clear(situation, disc, radius_m, limits_m, horizon_s, None);
                 output.add_share(share, None, &function);
@@ -120,9 +120,10 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
             .iter()
             .enumerate()
             .map(|(i, obstacle)| (obstacle.distance(situation.at), i));
-        for (distance_m, i) in
-            Nearest::of(distances.filter(|(distance_m, _)| *distance_m < outer_m)).iter()
-        {
+        // Backing off and the place to avoid count towards the functions that a program may have.
+        let most = NEAREST_MAX - if felt.is_some() { 2 } else { 0 };
+        let nearest = Nearest::of(distances.filter(|(distance_m, _)| *distance_m < outer_m));
+        for (distance_m, i) in nearest.iter().take(most) {
             let share = nearness(distance_m, inner_m, outer_m);
             match &obstacles[i] {
                 Obstacle::Circle { centre, radius_m } => {

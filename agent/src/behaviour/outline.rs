@@ -1,8 +1,8 @@
 //! Outline: the boat's closest distance to a polygon, for each course and speed.
 //!
 //! After a decision the boat keeps its motion while it turns, then moves straight over the ground.
-//! Without drift, a run at a higher speed contains those at lower speeds, so its pass distance is at
-//! most theirs.
+//! Without drift, a run at a higher speed contains those at lower speeds, so its pass distance is
+//! at most theirs.
 
 use super::steering::CPA_MIN_UTILITY;
 use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
@@ -331,7 +331,11 @@ impl Passes<'_> {
                 .utilities
                 .last()
                 .map_or(before.0[i], |last| last.0[i]);
-            if last < 100.0 {
+            let utilities = self.outline.utilities.iter();
+            if utilities.fold(before.0[i], |least, by_course| {
+                smaller(least, by_course.0[i])
+            }) < 100.0
+            {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
                 // By ascending speed: first the speeds that come no nearer than the turn, then the
