@@ -14,7 +14,7 @@ use scenario::strategy::{AvoidObstacle, NEAREST_MAX};
 use std::f64::consts::PI;
 
 /// Time for which a boat must stand still against its orders to count as stopped by an obstacle, s.
-const STOPPED_S: f64 = 3.0;
+const STOPPED_S: f64 = 2.0;
 /// Maximum distance of that obstacle by navigation, m: a large error of a receiver.
 const ERROR_MAX_M: f64 = 10.0;
 /// Distance of another boat that may be what stops the boat, m.
