@@ -270,6 +270,43 @@ fn obstacles_are_passed() {
 }
 
 #[test]
+fn a_boat_that_an_obstacle_stops_unexpectedly_backs_off() {
+    let program = "[behaviour.go]\nkind = 'waypoint'\npoints = [[60, 34]]\nweight = 100\n\
+        [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
+    let mut helm = helm(&without_safety(program));
+    // By its receiver it passes north of the disc of 2 m at (0, 30). It stands still nevertheless.
+    let stopped = |tenth: u32| {
+        let at_s = 0.1 * f64::from(tenth);
+        alone(at_s, Boat::at(-2.9, 34.0).going(90.0, 0.0))
+    };
+    let courses_deg: Vec<f64> = (0..50)
+        .map(|tenth| steered(&mut helm, &stopped(tenth)).0)
+        .collect();
+    assert!(courses_deg[10] < 90.0, "{courses_deg:?}");
+    assert!((courses_deg[49] - 270.0).abs() < 0.51, "{courses_deg:?}");
+}
+
+#[test]
+fn a_boat_of_a_fleet_starts_early_to_pass_a_teammate_port_to_port() {
+    let program = "base = \"SCENARIOS/strategies/strategy_4_assigned.toml\"\n";
+    let meeting = |mate: Boat| {
+        let own = Boat::at(-40.0, 0.0).going(90.0, 2.5);
+        let enemies = [Boat::at(75.0, 35.0), Boat::at(75.0, -35.0)];
+        steered(
+            &mut helm(&scenario(program)),
+            &picture(0.0, [own, mate], enemies),
+        )
+        .0
+    };
+    let alone_deg = meeting(Boat::at(-75.0, -35.0));
+    let course_deg = meeting(Boat::at(-4.0, 0.0).going(270.0, 2.5));
+    assert!(
+        course_deg > alone_deg + 5.0,
+        "{course_deg}, alone {alone_deg}"
+    );
+}
+
+#[test]
 fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
     let program = "[behaviour.go]\nkind = 'waypoint'\npoints = [[300, 0]]\nspeed_m_s = 3\nweight = 50\n\
         [behaviour.stay]\nkind = 'op_region'\nhalt_m = 20\nbeyond_halt = 'stops'\nexit_s = 1\nentry_s = 1\nrecovery_speed_m_s = 0.5\nweight = 300\n";
