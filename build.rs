@@ -1,5 +1,5 @@
-//! Tells a program the commit it was built from: both `squall` and `squall-gateway`, which lies in
-//! a folder below.
+//! Embeds the commit that a program was built from, both in `squall` and in `squall-gateway`, whose
+//! package is in a subfolder.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

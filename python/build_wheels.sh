@@ -2,9 +2,9 @@
 # Builds the wheel for this kind of machine and the source distribution: python/build_wheels.sh [FOLDER], python/dist by
 # default.
 #
-# One wheel serves every CPython from 3.10 on (abi3). On Linux zig links it against an old C library, so that it runs on systems
-# from 2014 on (manylinux_2_17): it comes from PyPI, as maturin does. With PLATFORM=linux it is linked against the
-# host's library, which is faster and works on hosts like this one. RUST_TARGET builds wheels for other machines:
+# One wheel serves every CPython from 3.10 on (abi3). On Linux, zig (from PyPI, like maturin) links it against an old C
+# library, so that it runs on systems from 2014 on (manylinux_2_17). With PLATFORM=linux it is linked against the host's
+# library: this is faster, and the wheel runs on similar hosts. RUST_TARGET builds wheels for other machines:
 # RUST_TARGET=aarch64-unknown-linux-gnu.
 set -euo pipefail
 out=$(realpath -m "${1:-"$(dirname "${BASH_SOURCE[0]}")/dist"}")

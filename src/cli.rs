@@ -22,7 +22,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
     (
         "Watch",
         &[
-            "view", "watch", "list", "runs", "replay", "log", "whatif", "helm",
+            "view", "watch", "list", "runs", "replay", "log", "import", "whatif", "helm",
         ],
     ),
     (
@@ -101,14 +101,13 @@ pub(crate) fn command() -> Command {
         .after_help(text)
 }
 
-/// Parses the command line. If only a different build has the command, it exits and names that
-/// build.
+/// Parses the command line. If only a different build has the command, exits and names that build.
 pub(crate) fn matches() -> ArgMatches {
     let mut command = number::with_negative_numbers(command());
     command
         .try_get_matches_from_mut(std::env::args_os())
         .unwrap_or_else(|mut error| {
-            // For an unknown option, this suggests passing it as a recording.
+            // For an unknown option, clap would suggest passing it as a recording.
             error.remove(ContextKind::Suggested);
             if let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand)
                 && GROUPS
@@ -256,7 +255,7 @@ mod tests {
             known.iter().all(|name| grouped.contains(name)),
             "{grouped:?} lacks one of {known:?}"
         );
-        // Only the build with the network has the other commands.
+        // Builds without the network lack the other commands.
         assert_eq!(
             grouped.len() == known.len(),
             cfg!(feature = "network"),

@@ -3,24 +3,33 @@
 use crate::progress::Progress;
 use crate::trial_command::{read_sheet, tick, usual_tick_s};
 use crate::water_args::{self, WaterArgs, within};
-use crate::{output_file, screen};
+use crate::{import_command, output_file, screen};
 use anyhow::{Context, Result, bail};
 use command_line::explain::UsageError;
 use command_line::scenario_files::existing;
+use import::{Format, Map};
 use primitives::SimTime;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use trial::Sheet;
 use trial::identify::{self, Fit, Log, Setting, Step};
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Boat from which the fit starts: a file, or the name of a boat in scenarios/boats
     boat: String,
-    /// Recorded data, as CSV. Columns: t_s, commands as for `squall trial --orders`, heading_deg,
-    /// surge_m_s, yaw_rate_deg_s and, if available, sway_m_s, x_m and y_m
+    /// Recorded data: any log that `squall import` reads, or a CSV table with the columns t_s,
+    /// commands as for `squall trial --orders`, heading_deg, surge_m_s, yaw_rate_deg_s and, if
+    /// available, sway_m_s, x_m and y_m
     #[arg(long, value_name = "FILE", value_parser = existing)]
     log: PathBuf,
+    /// Boat in the log, if it contains several
+    #[arg(long, value_name = "BOAT")]
+    vehicle: Option<String>,
+    /// Columns of a CSV table with other names, as for `squall import`
+    #[arg(long, value_name = "MAP")]
+    map: Option<Map>,
     /// Parameters to fit, separated by commas [default: surge_linear, surge_quadratic, sway_linear,
     /// yaw_linear, yaw_quadratic, yaw_lift, port_gain, starboard_gain and lag, if the boat has
     /// them]
@@ -63,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         )));
     }
     let parameters = identify::parameters(&args.fit, &boat)?;
-    let log = Log::of_sheet(&read_sheet(&args.log)?, &boat)?;
+    let log = Log::of_sheet(&sheet(args)?, &boat)?;
     let setting = Setting {
         sea: args.water.sea()?,
         seed: args.water.seed,
@@ -90,6 +99,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         .with_context(|| format!("{} was written, but is not a valid boat", out.display()))?;
     screen::print(&format!("fitted boat: {}\n", out.display()));
     Ok(ExitCode::SUCCESS)
+}
+
+/// The table of the log: as written by the user, or of the boat in a log of another program.
+fn sheet(args: &Args) -> Result<Sheet> {
+    if Format::of(&args.log)? == Format::Csv && args.map.is_none() && args.vehicle.is_none() {
+        return read_sheet(&args.log);
+    }
+    let boat = args.vehicle.as_deref();
+    let table = import_command::table_of(&args.log, args.map.as_ref(), boat)?;
+    Ok(Sheet::read(
+        &args.log.display().to_string(),
+        table.as_bytes(),
+    )?)
 }
 
 /// The path of the base as written in `out`: relative if both are in one folder, so that they can

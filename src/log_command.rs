@@ -21,7 +21,6 @@ mod quality;
 mod turning;
 
 #[derive(clap::Args)]
-#[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
     /// Recording to analyse: a file, or part of a name listed by `squall runs` [default: the newest
     /// in runs]. Two with --compare, any number with --quality
@@ -33,7 +32,9 @@ pub(crate) struct Args {
     /// Writes the summary, comparison or quality report to this file as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Prints this topic as CSV: a topic from the summary, or `events`
+    /// Prints this topic as CSV: a topic from the summary, or `events`. A table has one row per
+    /// message, with these exceptions: one per boat seen (pictures), per input (inputs), per word
+    /// (say) and per sentence (link)
     #[arg(long, value_name = "TOPIC", conflicts_with = "compare")]
     csv: Option<String>,
     /// Writes the CSV to this file instead of standard output
@@ -50,8 +51,8 @@ pub(crate) struct Args {
     /// edges, contacts and circling
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare"])]
     quality: bool,
-    /// Finds the moments that most changed the chance of winning, and how much each boat contributed,
-    /// by simulating many futures of the game. Takes about a minute on two cores
+    /// Finds the moments that most changed the chance of winning, and how much each boat
+    /// contributed, by simulating many futures of the game. Takes about a minute on two cores
     #[arg(long, conflicts_with_all = ["events", "csv", "alog", "compare", "quality"])]
     turning_points: bool,
     /// With --turning-points: total number of simulated futures
@@ -71,10 +72,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
 }
-
-const AFTER_HELP: &str = "\
-The summary lists the topics. A table has one row per message, with these exceptions: one per boat seen (pictures), \
-per input (inputs), per word (say) and per sentence (link).";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut files = args.files.clone();

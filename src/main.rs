@@ -6,6 +6,7 @@ mod cli;
 mod game_args;
 mod helm_text;
 mod identify_command;
+mod import_command;
 mod in_process;
 mod jobs_args;
 mod kinds;
@@ -91,6 +92,11 @@ enum Command {
         after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --csv events\n  squall log --compare strategy_4_vs_3 surveyor_2v2\n  squall log --turning-points --futures 50"
     )]
     Log(log_command::Args),
+    /// Turns logs of other programs into a recording: MOOS, ArduPilot, ROS, NMEA 0183, CSV.
+    #[command(
+        after_help = "Examples:\n  squall import alpha.alog bravo.alog --out game.mcap\n  squall import blue_one=00000042.BIN red_one=flight.tlog\n  squall import track.csv --map t=epoch_ms,speed=SOG:kn,heading=HDT:deg"
+    )]
+    Import(import_command::Args),
     /// Plays futures of a recorded game with changed strategies or sea.
     #[command(
         after_help = "Examples:\n  squall whatif --at 60 --blue strategy_5 --futures 20\n  squall whatif strategy_4_vs_3 --at 60 --vehicle red_1=learned --futures 20 --record future.mcap"
@@ -174,6 +180,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),
         Command::Runs(args) => Ok(runs_command::run(&args)),
+        Command::Import(args) => import_command::run(&args),
         Command::Log(args) => log_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub(crate) struct Minds {
     recording: Arc<Recording>,
     teams: Vec<Team>,
-    /// The proposals for each vehicle, and their times of arrival.
+    /// The proposals for each vehicle, and their arrival times.
     proposals: BTreeMap<VehicleId, Vec<(SimTime, PolicyProposal)>>,
 }
 
@@ -49,8 +49,8 @@ impl Minds {
         }
     }
 
-    /// The helm report with the utilities of all functions, and the order of the vehicle's mind
-    /// when it repeats this decision, if possible.
+    /// The helm report with the utilities of all objective functions, and the order of the
+    /// vehicle's mind when it repeats this decision, if possible.
     pub(crate) fn report_of(
         &mut self,
         vehicle: VehicleId,
@@ -67,7 +67,7 @@ impl Minds {
     }
 
     /// The order of the vehicle's mind when it repeats this decision, if possible. If `shown`, its
-    /// report includes the utilities of all functions, which takes most of the time.
+    /// report includes the utilities of all objective functions, which takes most of the time.
     pub(crate) fn decide(
         &mut self,
         vehicle: VehicleId,
@@ -80,7 +80,8 @@ impl Minds {
             self.teams[index] = Team::new(&self.recording, TeamId(index as u8));
         }
         let Team { runner, pictures } = &mut self.teams[index];
-        // If a teammate has already caused this decision, there is nothing to advance.
+        // If a query about a teammate has already advanced the team to this decision, nothing is
+        // left to do.
         let next = runner.decided().map_or(0, |last| last + 1);
         for (seq, place) in pictures
             .range(next..)

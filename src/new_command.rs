@@ -140,7 +140,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes a file to where its name will be found; never overwrites an existing file.
+/// Writes a file to a folder where its name will be looked up; never overwrites an existing file.
 fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
     let path = Path::new("scenarios")
         .join(kind.folder())
@@ -162,7 +162,7 @@ fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
 }
 
 /// Lists the user's own files with descriptions, then the names of the built-in ones by kind. For a
-/// single kind, also describes these.
+/// single kind, also describes the built-in ones.
 pub(crate) fn files(args: &FilesArgs) -> ExitCode {
     let kinds = args.kind.as_ref().map_or(KINDS, std::slice::from_ref);
     let mut own: Vec<[String; 2]> = vec![];

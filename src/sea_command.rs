@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The track of the boat, released at rest at the datum, pointing north, as in `squall trial
+/// The track of a boat released at rest at the datum, pointing north, as in `squall trial
 /// --manoeuvre drift`.
 fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sample>> {
     let mut trial_boat = TrialBoat::new(boat, sea, tick, seed, &Start::default());

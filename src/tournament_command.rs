@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
     let mut report = Report::new(&plan, &records);
     report.commit = env!("SQUALL_COMMIT").to_owned();
-    // A league that was stopped and continued ends with the same bytes as one that was not.
+    // A league's report must be byte-identical whether or not it was interrupted, so omit the rate.
     report.rate = league.is_none().then_some(rate);
     let of_league = league.as_ref().map(LeagueFile::report);
     for path in args.json.iter().chain(&of_league) {

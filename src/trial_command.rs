@@ -128,7 +128,7 @@ pub(crate) fn tick(text: &str) -> Result<f64, String> {
     trial::ticks_per_row(SimTime::from_s(tick_s)).map(|_| tick_s)
 }
 
-/// The tick for which a boat's reference values are valid, s.
+/// The tick (s) for which a boat's reference values are valid.
 pub(crate) fn usual_tick_s(boat: &Boat) -> f64 {
     match boat.drive {
         Drive::Thrusters { .. } => 0.05,

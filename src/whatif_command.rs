@@ -140,7 +140,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// Checks that a recorded game can be continued.
 pub(crate) fn check(recording: &Recording) -> Result<()> {
-    if recording.header().info.pace == recording::alog::PACE {
+    if recording.header().info.pace == recording::logs::PACE {
         bail!("MOOS logs do not contain the inputs of a game");
     }
     recording.scenario().has_no_real_boats()?;
@@ -178,7 +178,7 @@ pub(crate) fn past_at(recording: &Recording, at_s: f64) -> Result<Past> {
     ensure!(
         at_s < end_s,
         UsageError(format!(
-            "--at is {at_s}, expected less than {end_s:.1}, where the game ended"
+            "--at is {at_s}, expected less than {end_s:.1}, when the game ended"
         ))
     );
     let decision = past.scenario.decision();
@@ -284,7 +284,7 @@ fn of(game: &Game, team: usize, count: fn(&Counts) -> u32) -> f64 {
 pub(crate) struct Row<'a> {
     team: &'a str,
     quantity: &'static str,
-    /// Whether it is a fraction of all games.
+    /// Whether the quantity is a fraction of all games.
     is_share: bool,
     recorded: Estimate,
     changed: Estimate,

@@ -30,6 +30,7 @@ SKIPPED = {
     r"squall view --game day.*": "belongs to a game with boats, in its own terminal",
     r"squall run .*--blue imported.*|squall (strategy|policy) imported.*": "needs a model that the reader has trained",
     r"squall run .*--blue host:.*": "needs an entry of the reader's; python/tests/test_host.py has some",
+    r"squall import .*": "needs the reader's logs; tests/command/import.rs has some",
     r"squall (trial|identify) .*field\.csv.*": "needs the reader's log of a boat; tests/command/trial.rs has one",
     r"squall keys new keys --help": "prints help; the keys page creates keys",
     r"source <\(squall completions zsh\)|squall completions fish \| source": "needs its shell; tests/terminal.py has them",
@@ -65,7 +66,7 @@ SERVES = {
     r"squall gateway sitl .*": "firmware at",
 }
 
-# Commands that need another one beside them.
+# Commands that need a second one running beside them.
 GAME = "squall run surveyor_2v2 --pace realtime --no-record"
 BESIDE = {
     r"squall agent --game dock .*": "squall sim my_game --game dock --pace realtime",

@@ -92,7 +92,7 @@ fn bytes_of_game(scenario: Scenario, decisions: Vec<Decision>) -> Vec<u8> {
         .into_inner()
 }
 
-/// Numbers that are never sent by a sim.
+/// Numbers that a sim never sends.
 fn odd_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         any::<f64>(),

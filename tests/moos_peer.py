@@ -1,4 +1,4 @@
-"""The MOOS bridge against pymoos2, an independent client of MOOSDB, which this does not change.
+"""The MOOS bridge against pymoos2, an independent client of MOOSDB, unmodified.
 
     moos_peer.py PATH/OF/squall
 
@@ -170,7 +170,7 @@ def latency(port, number):
 
 
 def check_latency():
-    # The least disturbed of several rounds, because other programs share the machine.
+    # Use the least disturbed of several rounds, because other programs share the machine.
     bare, bridged = zip(*[(bare_latency(), latency(PORT, i)) for i in range(5)])
     for what, rounds in [("bare TCP", bare), ("through the MOOSDB", bridged)]:
         print(f"  round trip, {what}: p50 {min(p50 for p50, _ in rounds):.3f} ms, p99 {min(p99 for _, p99 in rounds):.3f} ms")
@@ -199,7 +199,7 @@ def drive(boat):
     boat.wait("a request out of reach gets no tag", lambda: "tagged=none" in boat.values["TAG_RESULT_BLUE_ONE"])
     boat.comms.notify("FLAG_GRAB_REQUEST", "vname=blue_one")
     boat.wait("a grab out of reach is answered", lambda: boat.values.get("FLAG_GRAB_REPORT") == "nothing_grabbed")
-    # Across the field, away from the other boat, as seen from it.
+    # Straight away from the other boat, across the field.
     x, y = boat.values["NAV_X"] + 0.5 * (own.x - other.x), boat.values["NAV_Y"] + 0.5 * (own.y - other.y)
     boat.wait("the boat gets to a point 10 m away", lambda: boat.distance(x, y) < 3, lambda: boat.go_to(x, y))
     boat.comms.notify("DEPLOY", "false")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What a newcomer does who has only the program, in an empty folder: `tests/newcomer.sh PATH/OF/squall`. On failure,
-# prints what failed and exits with 1.
+# The first steps of a newcomer who has only the program, in an empty folder: `tests/newcomer.sh PATH/OF/squall`. On
+# failure, prints what failed and exits with 1.
 set -euo pipefail
 program=$(realpath "$1")
 folder=$(mktemp -d)
@@ -48,7 +48,7 @@ expect "scenarios/strategies/mine.toml" squall new strategy mine
 expect "valid strategy" squall check scenarios/strategies/mine.toml
 expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-record
 
-# Played again each time the file is saved, with a mistake and without.
+# The game is played again each time the file is saved, with a mistake and without.
 squall run surveyor_2v2 --blue mine --in-process --no-record --watch-files >watched.txt 2>&1 &
 watching=$!
 # Waits until this many lines of the output contain a text.

@@ -21,7 +21,7 @@ from pathlib import Path
 
 
 def shown(command, columns, folder, keys=b"", wait_s=60, until=None):
-    """The bytes that a command writes to a terminal of this width until it ends or prints a text."""
+    """The bytes that a command writes to a terminal of this width until it ends or prints a given string."""
     process, terminal = pty.fork()
     if process == 0:
         os.chdir(folder)

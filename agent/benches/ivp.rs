@@ -7,7 +7,8 @@ use primitives::stream::Stream;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 
-/// Decisions evaluated in turn, so that branch predictors and caches cannot learn them.
+/// Number of different decisions, evaluated in turn so that branch predictors and caches cannot
+/// learn them.
 const SCENES: usize = 64;
 
 /// A waypoint, and contacts within 80 m, as in real helm decisions.

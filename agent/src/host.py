@@ -144,7 +144,7 @@ class World:
         return found
 
     def normalised(self, boat: int) -> np.ndarray:
-        """The observation of a boat as numbers from -1 to 1; for the asked boat exactly what Squall gave."""
+        """A boat's observation as numbers from -1 to 1; for the boat that decides, exactly as received from Squall."""
         found = self.observed(boat)
         if boat == self.me:
             names = [*OWN, *(each for _ in range(len(self.boats) - 1) for each in OTHER)]
@@ -188,7 +188,7 @@ class World:
         return state
 
     def field_point(self, name: str) -> Point:
-        """A point of the Aquaticus field, such as CH, for the team of the asked boat."""
+        """A point of the Aquaticus field, such as CH, for the team of the boat that decides."""
         rows = {row: i for i, row in enumerate(("B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"))}
         columns = {"PP": 1.0, "P": 0.75, "C": 0.5, "S": 0.25, "SS": 0.0}
         for column, share in columns.items():
@@ -210,7 +210,7 @@ class World:
         if not np.isfinite(numbers).all():
             raise ValueError(f"the action is {action!r}, which is not finite")
         if numbers.size == 1 and numbers[0] == int(numbers[0]) and -ACTIONS <= numbers[0] < ACTIONS:
-            return int(numbers[0]) % ACTIONS  # As Python lists have it, -1 is the last.
+            return int(numbers[0]) % ACTIONS  # As in Python lists, -1 is the last.
         if numbers.size >= 2:
             # Half a turn to either side is a turn to that side; more is the shorter way round.
             turn_deg = float(numbers[1])
@@ -239,7 +239,7 @@ class Entry:
             raise ValueError("gen_config.py asks for lidar observations, which Squall does not have")
         module = self._imported("solution", file)
         random.seed(game["seed"])
-        np.random.seed(game["seed"] % 2**32)  # Entries use it.
+        np.random.seed(game["seed"] % 2**32)  # Entries use numpy's global generator.
         if "torch" in sys.modules:
             sys.modules["torch"].manual_seed(game["seed"])
         self.solution = module.solution()
@@ -306,7 +306,7 @@ class Entry:
 
 def reason(error: BaseException) -> str:
     """An error in one line, with the place in the entry's code."""
-    own = globals().get("__file__", "<string>")  # Squall passes this program as text.
+    own = globals().get("__file__", "<string>")  # Squall passes this program to Python as a string.
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != own]
     frames = [frame for frame in frames if "importlib" not in frame.filename and not frame.filename.startswith("<")]
     # The entry's own line says more than that of a library that it calls.
@@ -325,7 +325,7 @@ def feed(requests: BinaryIO, lines: queue.Queue[bytes]) -> None:
 
 
 def serve(path: Path) -> None:
-    """Answers requests until standard input ends. What the entry prints, or tries to read, goes nowhere."""
+    """Answers requests until standard input ends. Discards the entry's output; its standard input is empty."""
     if hasattr(os, "setsid") and os.getpgrp() != os.getpid():
         os.setsid()
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb", 0)
@@ -341,12 +341,12 @@ def serve(path: Path) -> None:
     try:
         entry = Entry(path, json.loads(lines.get()))
         reply(0, {"action": 0})
-    except (Exception, SystemExit) as error:  # Whatever the entry's code does.
+    except (Exception, SystemExit) as error:  # The entry's code may raise anything.
         reply(0, {"error": reason(error)})
         return
     while True:
         line = lines.get()
-        while not lines.empty():  # Requests that came while the entry was late are past.
+        while not lines.empty():  # Requests that arrived while the entry was late are obsolete.
             line = lines.get()
         request = json.loads(line)
         try:

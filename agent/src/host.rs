@@ -1,8 +1,8 @@
 //! A competition entry as the mind of boats: a separate Python process decides for the boats of a
-//! team, and `host.py` in it translates to the entry's terms.
+//! team. In that process, `host.py` translates between Squall and the entry's interface.
 //!
-//! Like MOOS boats, an exception among minds: decisions come from outside, and the wait for them is
-//! limited by the wall clock. Without an answer in time, the boat stops.
+//! As with MOOS boats, this is an exception among minds: decisions come from outside, and the wait
+//! for them is limited by the wall clock. Without an answer in time, the boat stops.
 
 use crate::mind::Mind;
 use crate::pilot::{Pilot, Spaces};
@@ -62,7 +62,7 @@ impl Entries {
     }
 }
 
-/// An entry's process, or why there is none.
+/// An entry's process, or the reason why it is not running.
 pub(crate) struct Entry {
     process: Result<Process, String>,
     limit: Duration,
@@ -114,7 +114,7 @@ impl Entry {
     /// The entry's choice for a boat.
     ///
     /// # Errors
-    /// The reason why there is none.
+    /// The reason why there is no choice.
     fn ask(&mut self, request: Value) -> Result<Chosen, String> {
         let process = self.process.as_mut().map_err(|why| why.clone())?;
         let answer = process.ask(request, self.limit);
@@ -178,7 +178,7 @@ impl Process {
 
     fn send(&mut self, message: &Value) {
         if let Some(stdin) = &mut self.stdin {
-            // If it no longer reads, it has ended; then no answer will arrive.
+            // If the process no longer reads, it has ended, and no answer will arrive.
             let _ = writeln!(stdin, "{message}").and_then(|()| stdin.flush());
         }
     }
@@ -198,7 +198,7 @@ impl Process {
             let answer = answer.unwrap_or_else(|_| Answer {
                 number: self.number,
                 action: None,
-                error: Some("it wrote to the pipe of its host".to_owned()),
+                error: Some("it wrote to the pipe that carries its actions".to_owned()),
             });
             if answer.number == self.number {
                 return Ok(answer);
@@ -216,7 +216,7 @@ impl Drop for Process {
                 break;
             }
         }
-        // A process that has already ended cannot be killed; the wait only collects it.
+        // A process that has already ended cannot be killed; the wait only reaps it.
         drop(self.child.kill());
         drop(self.child.wait());
     }
@@ -426,7 +426,7 @@ mod tests {
             (answer(r#"\"action\":null"#), [error("it returned no action"), error("it returned no action")]),
             (
                 "if [ $n = 2 ]; then echo '{\"number\":1,\"action\":9}'; echo '{\"number\":2,\"action\":3}'; else echo x; fi".to_owned(),
-                [error("it wrote to the pipe of its host"), Ok(Chosen::Index(3))],
+                [error("it wrote to the pipe that carries its actions"), Ok(Chosen::Index(3))],
             ),
             ("exit 1".to_owned(), [error("its process has ended"), error("its process has ended")]),
             ("exec sleep 600".to_owned(), [error(late), error(late)]),

@@ -1,6 +1,7 @@
 //! Squall minds: the decision-makers of boats. Each boat has one; it receives a
 //! [`messages::Picture`] and returns an [`messages::Order`].
-//!  A mind cannot tell a real sea from a simulated one: this crate never imports `sim`. Open
+//!
+//! A mind cannot tell a real sea from a simulated one: this crate never imports `sim`. Open
 //! [`Mind`] first, then [`MindRunner`], which runs minds, then [`HelmMind`], which follows a
 //! strategy, the behaviours, and [`ivp`], which weighs them.
 

@@ -18,8 +18,8 @@ pub trait Mind: Any + Send {
     /// Decides on the newest picture.
     fn decide(&mut self, picture: &Picture) -> Order;
 
-    /// Like [`Mind::decide`], with the same order. `view` is the team's view of the picture, if
-    /// known, for a mind that would otherwise compute it.
+    /// Like [`Mind::decide`], and with the same result. `view` is the team's view of the picture,
+    /// if known, for a mind that would otherwise compute it.
     fn decide_in_team(&mut self, picture: &Picture, _view: Option<&Arc<TeamView>>) -> Order {
         self.decide(picture)
     }

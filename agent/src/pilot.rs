@@ -163,7 +163,7 @@ impl Pilot {
         self.follow(Chosen::of(self.actions, action, self.situation()));
     }
 
-    /// Turns and drives as given from the next decision on.
+    /// Applies this turn and speed from the next decision on.
     pub(crate) fn steer(&mut self, set_point: SetPoint) {
         self.set_point = set_point;
     }

@@ -40,8 +40,8 @@ impl Due {
 
     /// Records that a decision is made now.
     pub(crate) fn advance(&mut self, now: SimTime, period: SimTime) {
-        // Counted from decision to decision, not from picture to picture: lost pictures do not
-        // shift it.
+        // Count from decision to decision, not from picture to picture: lost pictures do not shift
+        // it.
         let next = self.0.unwrap_or(now) + period;
         // After a long gap, missed decisions are not made up.
         self.0 = Some(if next > now { next } else { now + period });
@@ -116,7 +116,7 @@ impl BoardPolicy {
         let output = self.network.output(self.model.output());
         let likeliest = action_of(&self.model, output)?;
         let action = if self.is_sampled {
-            // A separate stream for each boat: teammates with the same network draw different
+            // Use a separate stream for each boat: teammates with the same network draw different
             // actions.
             let me = situation.model.me;
             let noise = Noise::new(situation.model.seed, &format!("policy/{}", me.index()));

@@ -39,7 +39,7 @@ fn dealt<'a>(
         .collect();
     if strategy.assignment == Assignment::Seeded {
         let team = &scenario.teams[team.index()].name;
-        // A stream per team name: a second team, or other draws, do not change this deal.
+        // Use one stream per team name: neither another team nor other draws change this deal.
         Stream::new(scenario.seed, &format!("roles/{team}")).shuffle(&mut roles);
     }
     let place = boats

@@ -48,14 +48,14 @@ impl Team {
         }
     }
 
-    /// Processes the team's picture; of several in one decision, only the first.
+    /// Processes the team's picture; if there are several in one decision, only the first.
     fn take_in(&mut self, picture: &Picture) {
         if self.picture.is_some() || self.view.team().index() != usize::from(picture.team) {
             return;
         }
         self.picture = Some(std::ptr::from_ref(picture).addr());
         std::mem::swap(&mut self.view, &mut self.before);
-        // A mind that has not had a picture since may still use it.
+        // A mind that has not received a picture since then may still use the old view.
         if Arc::get_mut(&mut self.view).is_none() {
             self.view = Arc::new(TeamView::clone(&self.before));
         }
@@ -152,7 +152,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     }
 
     /// Delivers messages that teammates in other processes sent after the previous decision. Minds
-    /// ignore messages of the other team.
+    /// ignore messages from the other team.
     pub fn receive(&mut self, messages: &[Word]) {
         if !messages.is_empty() {
             self.boats
@@ -201,8 +201,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
                 .iter_mut()
                 .map(|boat| (picture_of(boat.vehicle), boat))
                 .collect();
-            // In small parts, as threads become free: some boats take several times as long as
-            // others.
+            // Hand out the boats in small parts, as threads become free: some boats take several
+            // times as long as others.
             let parts = Mutex::new(all.chunks_mut(MINDS_MIN / 2));
             let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
             let work = || {
@@ -221,8 +221,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);
         sent.clear();
-        // After all have decided: teammates receive a boat's messages at the next decision, in one
-        // process as across several, for any order of the minds.
+        // Send after all have decided: teammates receive a boat's messages at the next decision, in
+        // one process as across several, for any order of the minds.
         self.boats.iter().for_each(|boat| boat.mind.send(&mut sent));
         self.receive(&sent);
         self.sent = sent;
@@ -254,7 +254,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     /// The orders of the last decision as a message to the sim that issued this ticket, identical
     /// on every call. `None` before the first decision.
     pub fn answer(&self, ticket: u64) -> Option<Orders> {
-        // With the picture's own time and number, from which the sim identifies the answered tick.
+        // Use the picture's own time and number, by which the sim identifies the answered tick.
         let stamp = Stamp {
             version: Orders::VERSION,
             ..self.decided?
@@ -295,7 +295,8 @@ mod tests {
     use super::*;
     use primitives::SimTime;
 
-    /// Orders the proposed speed plus the values received, and sends its number of decisions.
+    /// A mind that orders the proposed speed plus the values received, and sends its number of
+    /// decisions.
     struct Adder {
         me: VehicleId,
         decisions: f64,

@@ -149,8 +149,7 @@ impl CompassCheck {
         }
     }
 
-    /// The compass offset (rad) with its standard deviation; add it to the compass heading to get
-    /// the true heading.
+    /// The compass offset (rad), to be added to the compass heading, and its standard deviation.
     pub(crate) fn offset_rad(&self) -> Option<(f64, f64)> {
         if self.runs.len() < RUNS_MIN {
             return None;
@@ -163,8 +162,9 @@ impl CompassCheck {
                 .scaled(1.0 / count)
         };
         let heading = mean(|run| run.ordered.scaled(1.0 / run.ordered.length()));
-        // On one heading, an offset cannot be told from a cross current. A plain limit for the
-        // angle between heading and course either misses 30 degrees or fails in a current.
+        // On one heading, an offset cannot be distinguished from a cross current. A fixed limit on
+        // the angle between heading and course either misses offsets of 30 degrees or gives false
+        // alarms in a current.
         if heading.length() > MEAN_HEADING_MAX {
             return None;
         }

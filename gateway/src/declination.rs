@@ -1,7 +1,7 @@
 //! Declination: the angle of the compass east of true north, from the World Magnetic Model of 2025.
 //!
-//! The model covers only the earth's core. In some places iron in the ground turns a compass by
-//! some degrees more, and a boat's compass has its own errors.
+//! The model covers only the field of the earth's core. In some places, iron in the ground deflects
+//! a compass by several more degrees, and a boat's compass has its own errors.
 
 use crate::nmea::Date;
 use primitives::LatLon;

@@ -5,10 +5,10 @@ use messages::external::ExternalOrder;
 use primitives::SimTime;
 
 /// Detects orders with a time that the game cannot have reached, or from before the boat joined.
-/// The game runs at most as fast as the gateway's clock, so game time minus gateway time only
-/// falls: by delays, pauses, and a sim that does not keep up. The largest observed difference is
-/// the best estimate. When the boat joins, the difference is at most that between the time in the
-/// sim's answer and our own time of the request.
+/// The game runs at most as fast as the gateway's clock, so game time minus gateway time can only
+/// fall: because of delays, pauses, or a sim that does not keep up. The largest observed difference
+/// is the best estimate. When the boat joins, the difference is at most the game time in the sim's
+/// answer minus our own time of the request.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GameClock {
     ahead_max: SimTime,
@@ -18,9 +18,9 @@ pub(crate) struct GameClock {
 /// The state of a game that the boat has joined.
 #[derive(Clone, Copy, Debug)]
 struct Joined {
-    /// Game time at that moment.
+    /// Game time when the boat joined.
     since: SimTime,
-    /// Maximum of game time minus our own, as far as known from orders.
+    /// Upper bound of game time minus our own, from the join.
     most: SimTime,
     seen: Option<SimTime>,
 }
@@ -37,7 +37,7 @@ pub(crate) enum OrderTime {
 }
 
 impl GameClock {
-    /// A clock without a game yet, which accepts stamps at most this far ahead of it.
+    /// A clock that has no game yet; it accepts stamps at most this far ahead.
     pub(crate) fn new(ahead_max: SimTime) -> GameClock {
         GameClock {
             ahead_max,
@@ -45,8 +45,8 @@ impl GameClock {
         }
     }
 
-    /// Records that the boat, which sent its request at our time `asked`, has joined a game whose
-    /// time was `since` at some later moment.
+    /// Records that the boat has joined a game: its request was sent at our time `asked`, and the
+    /// game's time was `since` at some later moment.
     pub(crate) fn join(&mut self, asked: SimTime, since: SimTime) {
         // The answer was created after the request, so the game is at most this far ahead of our
         // clock. The answer's travel time is unknown, and only makes the bound safer.
@@ -68,7 +68,7 @@ impl GameClock {
         if stamp < joined.since {
             return OrderTime::BeforeJoining;
         }
-        // Anyone may have sent it, with any stamp.
+        // Anyone may have sent the order, with any stamp.
         let difference = SimTime(stamp.0.saturating_sub(now.0));
         let known = joined.seen.unwrap_or(joined.most);
         // An order far in the future would count as newer than all later real ones, and block the

@@ -5,10 +5,10 @@
 //! is on one line, at its true distance.
 //!
 //! - On a plane that touches the ellipsoid at the datum (ENU), distances are `s^3 / 6 R^2` shorter:
-//!   4 um at 1 km, 4 mm at 10 km.
+//!   4 µm at 1 km, 4 mm at 10 km.
 //! - MOOS's `LatLong2LocalGrid` is a different map, of a sphere with the ellipsoid's radius at that
-//!   latitude: 200 m from a datum at 42 degrees north it is 0.4 m off. Boats on one field must use
-//!   the same map.
+//!   latitude: 200 m from a datum at 42 degrees north, the two differ by 0.4 m. Boats on one field
+//!   must use the same map.
 
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use primitives::{LatLon, Ned};

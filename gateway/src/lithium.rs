@@ -34,7 +34,7 @@ mod tests {
 
     #[test]
     fn the_charge_and_the_voltage_of_a_cell_match() {
-        // Boats showed 24.8 V on seven cells with 15433 of 57741 left.
+        // Boats reported 24.8 V on seven cells with 15433 of 57741 left.
         assert!((charge_left(24.8 / 7.0).unwrap() - 15433.0 / 57741.0).abs() < 0.02);
         for left in [0.0, 0.07, 0.5, 0.95, 1.0] {
             assert!(

@@ -1,9 +1,9 @@
 //! Checks a boat's instruments against each other: its compass against its course, its reported
 //! speed against its positions.
 //!
-//! The checked faults are impossible on any sea: a compass that does not change in any digit while
-//! the course turns far, and positions that move faster than the reported speed. Leeway and current
-//! cause neither.
+//! The faults checked for are conditions that no sea can cause: a compass that does not change in
+//! any digit while the course turns far, and positions that move faster than the reported speed.
+//! Leeway and current cause neither.
 
 use crate::supervisor::NavFault;
 use primitives::SimTime;
@@ -11,22 +11,22 @@ use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::collections::VecDeque;
 
-/// Minimum time over which positions yield a speed, s.
+/// Minimum time (s) over which positions yield a speed.
 const WINDOW_S: f64 = 4.0;
 const WINDOW_MIN_S: f64 = 2.0;
 /// Maximum number of positions stored: 20 a second.
 const FIXES_MAX: usize = 80;
 /// How far (m/s) and for how long (s) the reported speed may be below the speed from positions: a
 /// fix may step by a few metres.
-// At these limits no sea, wind or step of a fix alone triggers an alarm: a false alarm stops a boat
-// in a game.
+// At these limits, no sea, wind or position step alone triggers an alarm: a false alarm stops a
+// boat in a game.
 const SPEED_GAP_M_S: f64 = 1.2;
 const SPEED_GAP_S: f64 = 2.5;
 /// Minimum speed at which a course is meaningful, m/s.
 const COURSE_FROM_M_S: f64 = 0.8;
-/// Maximum time between two fixes whose courses are compared, s.
+/// Maximum time (s) between two fixes whose courses are compared.
 const COURSE_GAP_MAX_S: f64 = 1.0;
-/// Turn of the course without any change of the compass that counts as a fault, rad.
+/// Turn of the course (rad) that counts as a fault if the compass does not change.
 const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_3;
 
 /// A boat's motion according to each instrument.
@@ -36,7 +36,7 @@ pub(crate) struct MotionCheck {
     fixes: VecDeque<(SimTime, Ned)>,
     /// When the reported speed first fell below the speed from positions.
     slow_since: Option<SimTime>,
-    /// The compass heading, rad, and the turn of the course since it last changed, rad.
+    /// The compass heading, and the turn of the course since the heading last changed, rad.
     shown: Option<(f64, f64)>,
     /// The last course (rad), its time, and whether it was reported.
     course: Option<(SimTime, bool, f64)>,
@@ -59,7 +59,7 @@ impl MotionCheck {
             measured.length() - reported.length() > SPEED_GAP_M_S
         });
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
-        // A stepping fix implies a wrong course, so the reported velocity takes precedence.
+        // A position step gives a wrong course, so the reported velocity takes precedence.
         self.take_course(
             now,
             reported.is_some(),
@@ -71,8 +71,8 @@ impl MotionCheck {
 
     fn take_course(&mut self, now: SimTime, is_reported: bool, velocity: Option<Ned>) {
         let course_rad = velocity.map(Ned::direction_rad);
-        // Between distant fixes a boat may have gone astern, and positions step although the
-        // reported velocity does not.
+        // Between fixes far apart in time, a boat may have gone astern. Courses from different
+        // sources are not compared: positions may step when the reported velocity does not.
         let is_like = |at: SimTime, reported: bool| {
             (now - at).as_s() <= COURSE_GAP_MAX_S && reported == is_reported
         };
@@ -111,7 +111,7 @@ impl MotionCheck {
         if (*last - *first).as_s() < WINDOW_MIN_S {
             return None;
         }
-        // The means of both halves, not the first and last fix: a single step of the receiver would
+        // Use the means of both halves, not the first and last fix: a single position step would
         // look like speed.
         let half = self.fixes.len() / 2;
         let middle = |fixes: &mut dyn Iterator<Item = &(SimTime, Ned)>| {
@@ -181,8 +181,8 @@ mod tests {
                 "{turn_deg_s}"
             );
         }
-        // A compass with a large offset that turns is not stuck, nor is that of a boat that drives
-        // straight or lies still.
+        // A compass that turns is not stuck, even with a large offset; nor is that of a boat that
+        // drives straight or lies still.
         assert_eq!(
             circle(2.6, 20.0, |course_deg| course_deg + 70.0, Some),
             None

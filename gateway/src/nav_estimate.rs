@@ -1,4 +1,4 @@
-//! The navigation estimate of a real boat, from its reports, with their faults.
+//! The navigation estimate of a real boat, computed from its reports, and the faults in them.
 //!
 //! Position and velocity over the ground come from the last good fix, heading and rate of turn from
 //! the last attitude. Bad data is reported as a [`NavFault`], never hidden: a repeated or doubtful
@@ -17,15 +17,15 @@ use primitives::SimTime;
 use primitives::angle::{rad_from_compass_deg, wrap_pi};
 use primitives::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
 
-/// Time for which the position must be consistent after a jump to be trusted again, s.
+/// Time (s) for which the position must be consistent after a jump to be trusted again.
 const JUMP_MEMORY_S: f64 = 2.0;
-/// Lifetime of a reported velocity; then it is computed from changes of position, s.
+/// Lifetime of a reported velocity, s; after that, velocity is computed from positions.
 const VELOCITY_AGE_MAX_S: f64 = 1.5;
 /// Valid compass readings, degrees; other values count as missing.
 pub(crate) const HEADINGS_DEG: std::ops::RangeInclusive<f64> = -180.0..=360.0;
-/// Time after the last command with thrust for which the boat counts as under thrust, s.
+/// Time (s) after the last command with thrust for which the boat counts as under thrust.
 const THRUST_MEMORY_S: f64 = 0.5;
-/// Commanded speed from which the position must change, m/s.
+/// Minimum commanded speed (m/s) at which the position must change.
 const THRUST_FROM_M_S: f64 = 0.5;
 /// Lifetime of a command, s.
 const ORDERED_MEMORY_S: f64 = 1.5;
@@ -104,7 +104,8 @@ impl NavEstimator {
         self.frame.ned(LatLon { lat_deg, lon_deg })
     }
 
-    /// Discards all data: the next may come from a different boat, or from the same boat elsewhere.
+    /// Discards all data: the next data may come from a different boat, or from the same boat
+    /// elsewhere.
     pub(crate) fn forget(&mut self) {
         self.known = Known::default();
     }
@@ -168,8 +169,8 @@ impl NavEstimator {
             .map_or_else(Ned::default, |(_, velocity)| velocity)
     }
 
-    /// Velocity over the ground for stopping in time, m/s: the reported velocity, or that from
-    /// positions if it is faster.
+    /// Velocity over the ground for predicting the stopping distance, m/s: the reported velocity or
+    /// that from positions, whichever is faster.
     pub(crate) fn fastest_velocity_m_s(&self) -> Ned {
         let reported = self.velocity_m_s();
         let measured = self.known.motion.velocity_m_s().unwrap_or_default();
@@ -200,8 +201,8 @@ impl NavEstimator {
             .map_or(0.0, |since| (now - since).as_s());
         self.known
             .doubt
-            // In this order, because operators see one cause: first the receiver's own report, then
-            // old data, then contradictions.
+            // In this order, because operators see only one cause: first the receiver's own report,
+            // then old data, then contradictions.
             .or(jump.map(|(_, by_m)| NavFault::Jump(by_m)))
             .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
             .or((heading_age_s > self.watch.age_max_s)
@@ -218,8 +219,8 @@ impl NavEstimator {
 
     fn take_fix(&mut self, now: SimTime, fix: &protocol::Fix) -> bool {
         let doubt = self.doubt_of(fix);
-        // A boat may send the same fix twice, in two sentences. Evidence against it may be in only
-        // the second.
+        // A boat may send the same fix twice, in two sentences. Only the second may contain
+        // evidence against it.
         if self.is_repeated(fix.time, fix.at) {
             self.known.doubt = doubt.or(self.known.doubt);
             return false;
@@ -228,11 +229,11 @@ impl NavEstimator {
         self.take_position(now, fix.at, doubt)
     }
 
-    /// Evidence of the receiver against its own fix.
+    /// The receiver's own evidence against its fix.
     fn doubt_of(&mut self, fix: &protocol::Fix) -> Option<NavFault> {
         // RMC reports neither quality nor dilution, so those of the preceding GGA also apply to it;
-        // otherwise each RMC would clear a fault of the position. Either sentence alone can report
-        // that there is no fix.
+        // otherwise each RMC would clear a position fault. Either sentence alone can report that
+        // there is no fix.
         let told = self
             .known
             .told
@@ -294,7 +295,7 @@ impl NavEstimator {
                 .known
                 .thrust_at
                 .is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
-            // The same in every digit. Without thrust a boat may well lie still.
+            // The position is the same in every digit. Without thrust, a boat may well lie still.
             self.known.still_since =
                 (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
         }

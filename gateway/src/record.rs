@@ -31,8 +31,8 @@ pub(crate) struct RecordedEvent {
     pub(crate) event: Event,
 }
 
-/// The opening of a recording by a gateway with this plan, started at this UTC time (ns) by a
-/// program built from this commit.
+/// The opening of a recording by a gateway with this plan, started at this UTC time (ns); the
+/// program was built from this commit.
 pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
     let plan_json = serde_json::to_string(plan).expect("a plan is JSON");
     let facts = [
@@ -83,8 +83,8 @@ impl StepEncoder {
         out: &Output,
     ) -> Vec<Entry> {
         let mut entries = match input {
-            // As CDR on a separate topic, because link bytes make up most of a recording; JSON
-            // would be several times as long.
+            // Use CDR on a separate topic: link bytes make up most of a recording, and JSON would
+            // be several times as long.
             Input::Bytes(bytes) => vec![self.link_bytes(at, game_now, false, bytes)],
             other => vec![json(
                 INPUT,

@@ -50,8 +50,7 @@ struct RecordedStep {
     events: Vec<Event>,
 }
 
-/// The plan of a recording. Settings newer than the recording get their values from the default
-/// file.
+/// The plan of a recording. Settings added since the recording take their default values.
 fn plan_of(text: &str) -> Result<Plan, serde_json::Error> {
     let mut plan: Value = serde_json::from_str(text)?;
     if let Some(gateway) = plan.get_mut("gateway") {

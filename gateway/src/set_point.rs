@@ -1,8 +1,8 @@
 //! The set-point mapper: converts orders to set-points for the boat.
 //!
 //! With `drive = "thrust"` the heading and speed loops run in the gateway; with `drive = "speed"`
-//! they run on the boat. Thrust is in per cent, its difference positive to starboard:
-//! port = thrust + difference, starboard = thrust − difference.
+//! they run on the boat. Thrust is in per cent, and its difference is positive for a turn to
+//! starboard: port = thrust + difference, starboard = thrust − difference.
 
 use crate::config::{Drive, Gateway, Limits, Loops};
 use crate::thrust_check::Ordered;
@@ -17,7 +17,7 @@ use primitives::math::interpolate;
 pub enum SetPoint {
     /// Thrust and thrust difference.
     Thrust {
-        /// Thrust of both thrusters, per cent.
+        /// Mean thrust of the two thrusters, per cent.
         thrust_pct: f64,
         /// Difference, positive to starboard, per cent.
         difference_pct: f64,
@@ -93,8 +93,8 @@ impl SetPointMapper {
                 let turn_rad = wrap_pi(heading_rad - nav.psi_rad);
                 return self.steered(now, (heading_rad, turn_rad, speed_m_s), nav);
             }
-            // A boat with its own heading loop receives the heading, and may turn to either side
-            // for half a turn.
+            // A boat with its own heading loop receives only the heading, so it may make a half
+            // turn to either side.
             Order::Turn { by_rad, speed_m_s } => {
                 return self.steered(now, (nav.psi_rad + by_rad, by_rad, speed_m_s), nav);
             }
@@ -161,8 +161,8 @@ impl SetPointMapper {
             .map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S))
     }
 
-    /// Our own loops: thrust from the map and the speed error, difference from the heading error,
-    /// which takes priority.
+    /// Our own loops: thrust from the map and the speed error, difference from the heading error;
+    /// the difference takes priority.
     fn steer(&mut self, step_s: f64, turn_rad: f64, speed_m_s: f64, nav: &Nav) -> (f64, f64) {
         let Loops {
             speed_pct_per_m_s,
@@ -199,7 +199,7 @@ impl SetPointMapper {
             ..
         } = self.limits;
         let (_, thrust_before, difference_before) = self.last.unwrap_or((now, 0.0, 0.0));
-        // The first set-point may grow as much as in a tenth of a second.
+        // The first set-point may grow by as much as in a tenth of a second.
         let growth = slew_pct_s
             * if self.last.is_some() {
                 self.step_s(now)
@@ -408,7 +408,7 @@ mod tests {
         else {
             panic!("speed")
         };
-        // Magnetic north is west of true north, so the compass shows more.
+        // Magnetic north is west of true north, so the compass reads higher.
         assert!((heading_deg - 102.5).abs() < 1e-9, "{heading_deg}");
         assert_eq!(speed_m_s, 3.0);
     }

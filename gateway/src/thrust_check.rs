@@ -22,42 +22,43 @@ pub enum ThrustFault {
     /// The boat's heading does not respond to the thrust difference: rate of turn in degrees/s at
     /// half of the full difference.
     #[error(
-        "the thrusters: its heading does not respond to differential thrust: {0:.0} degrees/s at half difference"
+        "the thrusters: the heading does not respond to differential thrust: {0:.0} degrees/s at half difference"
     )]
     NoTurn(f64),
     /// The forward speed (m/s) after 40 s under thrust is too low.
-    #[error("the thrusters: it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
+    #[error("the thrusters: the boat makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
     NoWay(f64),
-    /// The boat goes astern instead of ahead, or does not take its heading: error of its course,
-    /// degrees.
+    /// The boat goes astern instead of ahead, or does not turn to its ordered heading: error of its
+    /// course, degrees.
     #[error("the boat moves against its orders: its course is off by {0:.0} degrees")]
     Against(f64),
 }
 
-/// Minimum ordered speed for which a boat must make way, m/s.
+/// Minimum ordered speed (m/s) at which a boat must make way.
 const WAY_FROM_M_S: f64 = 1.2;
-/// Time for which the order must be in force, s.
+/// Time (s) for which the order must be in force.
 const WAY_S: f64 = 40.0;
-/// Minimum fraction of the ordered speed that the boat must then reach, unless a current is as
-/// fast.
+/// Minimum mean fraction of the ordered speed over that time; a healthy boat falls below it only in
+/// a head current of about its own speed.
 const WAY_SHARE_MIN: f64 = 0.1;
-/// Minimum ordered speed for which a boat can move against its orders, m/s.
+/// Minimum ordered speed (m/s) at which a boat can count as moving against its orders.
 const AGAINST_FROM_M_S: f64 = 0.8;
-/// Distance astern that counts as a fault (m), and the speed that wind and current may add (m/s).
+/// Distance astern that counts as a fault (m), and the speed astern that wind and current may cause
+/// (m/s).
 const ASTERN_M: f64 = 6.0;
 const ASTERN_DRIFT_M_S: f64 = 0.4;
-/// Error from a held heading (rad) that counts as a fault after this time (s) at this speed or more
-/// (m/s). Time in which the boat turns to that heading at least at this rate (rad/s) does not
-/// count; time in which the error exceeds this angle (rad), so that the boat moves away, counts
-/// twice.
+/// A heading error of this angle (rad) from a held order counts as a fault after this time (s) at
+/// this speed or more (m/s). Time in which the boat turns to the ordered heading at this rate
+/// (rad/s) or faster does not count. Time in which the error exceeds the last angle (rad), so that
+/// the boat moves away, counts twice.
 const ASTRAY_RAD: f64 = 0.45;
 const ASTRAY_S: f64 = 10.0;
 const ASTRAY_FROM_M_S: f64 = 0.5;
 const ASTRAY_TURN_RAD_S: f64 = 0.05;
 const ASTRAY_AWAY_RAD: f64 = 1.4;
-/// Both limits grow in waves with the variance of the sway over about this time (s): by this many m
-/// and s for each m²/s². A gale (0.1 to 0.3 m²/s²) holds a healthy boat for 40 s, or drives it 30 m
-/// away. In a simulated day (`tests/gale`) half of this is enough.
+/// In waves, both limits grow with the variance of the sway velocity over about this time (s): by
+/// these amounts (m and s) for each m²/s². A gale (0.1 to 0.3 m²/s²) can hold a healthy boat for 40
+/// s, or drive it 30 m away. In a simulated day (`tests/gale`), half of this growth is enough.
 const SWAY_MEMORY_S: f64 = 10.0;
 const ASTERN_UNREST_M: f64 = 40.0;
 const ASTRAY_UNREST_S: f64 = 1500.0;
@@ -68,15 +69,16 @@ const TURN_LAG_S: f64 = 0.7;
 /// Time over which rates and orders are compared (s), and the minimum number of rates.
 const TURN_MEMORY_S: f64 = 60.0;
 const PIECES_MIN: f64 = 20.0;
-/// Number of consecutive rates that count as one, since waves and gusts last.
+/// Number of consecutive rates that count as one: waves and gusts last, so the rates are
+/// correlated.
 const PIECES_ALIKE: f64 = 8.0;
 /// Minimum scatter of the rates, rad/s.
 const TURN_SCATTER_MIN_RAD_S: f64 = 0.03;
 /// Minimum rate of turn, rad/s, of a healthy boat with a thrust difference of 100 %.
 const TURN_MIN_RAD_S: f64 = 0.15;
 /// Number of standard deviations below the minimum that makes a rate a fault. In a gale the wind
-/// may hold a healthy boat for more than a minute, or turn it the other way: the check is whether a
-/// larger order makes it turn more.
+/// may hold a healthy boat for more than a minute, or turn it the other way, so the check is
+/// whether a larger order makes it turn more.
 const SIGMAS: f64 = 5.0;
 /// Maximum gap between continuous orders, s.
 const GAP_MAX_S: f64 = 1.5;
@@ -159,10 +161,10 @@ pub(crate) struct ThrustCheck {
     way: Option<Way>,
     /// How far the boat has gone astern instead of ahead, m.
     astern_m: f64,
-    /// The ordered heading (rad), and how long the boat has not taken it (s).
+    /// The ordered heading (rad), and how long the boat has been off it (s).
     astray: Option<(f64, f64)>,
     sway: Sway,
-    /// Its rate of turn, with the waves filtered out, rad/s.
+    /// The boat's rate of turn, with the waves filtered out, rad/s.
     turn_rad_s: f64,
     fault: Option<ThrustFault>,
 }
@@ -194,8 +196,8 @@ impl ThrustCheck {
             .observe(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
         if let Some((slope, sigma)) = known
             // A plain limit such as "full difference for 8 s and no turn" does not work: in a gale,
-            // a simulated Surveyor was held this way, or turned the other way, for 15 s 28 times in
-            // two hours of four boats.
+            // four simulated Surveyors were held like this, or turned the other way, for 15 s on 28
+            // occasions in two hours.
             && slope + SIGMAS * sigma < TURN_MIN_RAD_S
         {
             self.fault = Some(ThrustFault::NoTurn((0.5 * slope).to_degrees()));
@@ -267,8 +269,8 @@ impl ThrustCheck {
         held.ordered += ordered_m_s;
         held.seen += ahead_m_s;
         if (now - held.since).as_s() >= WAY_S {
-            // A gradual loss of power is not detected: no current or gale alone reduces the speed
-            // to a tenth for 40 s.
+            // No current or gale alone reduces the speed to a tenth for 40 s. A gradual loss of
+            // power is not detected.
             if held.seen < WAY_SHARE_MIN * held.ordered {
                 self.fault = Some(ThrustFault::NoWay(held.seen / held.count));
             }
@@ -297,7 +299,7 @@ mod tests {
         }
     }
 
-    /// When and which fault occurs, s, for this order and this motion of the boat.
+    /// The first fault, and when it occurs (s), for this order and motion of the boat.
     fn first_fault(
         ordered: impl Fn(f64) -> Ordered,
         turn_deg_s: impl Fn(f64) -> f64,
@@ -328,7 +330,7 @@ mod tests {
         }
     }
 
-    /// To each side in turn, for five seconds.
+    /// Turns to each side alternately, five seconds each.
     fn weaving(time_s: f64) -> Ordered {
         held(0.5, if time_s % 10.0 < 5.0 { 40.0 } else { -40.0 })(time_s)
     }

@@ -52,7 +52,7 @@ class VectorEnvironment:
     def __init__(
         self, setup: Setup, seed: int, games: int, threads: int, record: tuple[str, int] | None = None
     ) -> None:
-        """Starts `games` games. Seeds count up from `seed`, across the games and then the episodes.
+        """Starts `games` games. Seeds count up from `seed`, first across the games, then across their episodes.
 
         `record` is a folder, created if necessary, and n: every n-th game is recorded, counted like seeds. Raises ValueError with all faults
         of the setup and its files, or of the folder.

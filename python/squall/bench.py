@@ -1,7 +1,7 @@
 """Measures steps per second: `python -m squall.bench`.
 
 Plays games with all four boats observed and random actions, at the game's own period of 0.1 s, in the spaces of Pyquaticus. An agent
-step is one boat's. Times are processor times, so that other programs matter little. If Pyquaticus can be imported
+step is one boat's. Times are CPU times, so that other programs have little effect. If Pyquaticus can be imported
 (https://github.com/mit-ll-trusted-autonomy/pyquaticus), it is measured too.
 """
 
@@ -23,7 +23,7 @@ on which Squall's games reached 230,000 through gymnasium.vector."""
 
 
 def steps_per_s(step: Callable[[], None], seconds: float) -> float:
-    """Calls of `step` per second of processor time: the best of three measurements, each a third of `seconds` long."""
+    """Calls of `step` per second of CPU time: the best of three measurements, each a third of `seconds` long."""
     step()
     best = 0.0
     for _ in range(3):
@@ -41,7 +41,7 @@ def vector_step(game: str, games: int, *, copy: bool) -> Callable[[], None]:
         games, game=game, observation="pyquaticus", decision_s=None, opponents="policy", threads=1, seed=1, copy=copy
     )
     environment.reset()
-    # Drawn in advance, because numpy would not draw a policy's actions either.
+    # Drawn in advance: with a policy, numpy would not draw actions, so the cost does not count.
     actions = np.random.default_rng(1).integers(0, 17, (256, environment.num_envs))
     turn = 0
 

@@ -164,7 +164,7 @@ def play_all(
                 end = min(begin + games, plan.games)
                 in_flight[remote.remote(reference, begin, end)] = begin
                 begin = end
-            # Not one by one, because each wait takes time in proportion to the number of tasks.
+            # Wait for several tasks, because each wait takes time in proportion to the number of tasks.
             some = max(1, len(in_flight) // 16)
             ready, _ = ray.wait(list(in_flight), num_returns=some, timeout=WAIT_S)
             for one, results in zip(ready, ray.get(ready), strict=True):

@@ -49,7 +49,7 @@ class _OpaqueType(type):
 
 
 class _Opaque(metaclass=_OpaqueType):
-    """Stands for a class, function or object that a policy does not need, such as a trainer's settings."""
+    """A placeholder for a class, function or object that a policy does not need, such as a trainer's settings."""
 
     def __new__(cls, *_: object, **__: object) -> Any:
         return cls
@@ -63,7 +63,7 @@ class _Opaque(metaclass=_OpaqueType):
 
 @dataclass(frozen=True)
 class _Storage:
-    """The type of a storage of PyTorch."""
+    """The type of a PyTorch storage."""
 
     dtype: str
 
@@ -88,7 +88,7 @@ def _parameter(data: np.ndarray, *_: object) -> np.ndarray:
 
 
 def _array_names() -> dict[tuple[str, str], Any]:
-    # Through numpy's own pickles, because the functions' modules have had several names.
+    # Found by pickling with numpy itself, because the functions' modules have been renamed.
     found: dict[tuple[str, str], Any] = {("numpy", "ndarray"): np.ndarray, ("numpy", "dtype"): np.dtype}
     reconstruct = np.zeros(1).__reduce__()[0]
     scalar = np.float32(0).__reduce__()[0]
@@ -208,7 +208,7 @@ class Source:
 def read(path: Path) -> Source:
     """Reads a file of any supported kind.
 
-    Raises ConversionError if it is none, or uses names that a policy does not need.
+    Raises ConversionError if its kind is not supported, or it uses names that a policy does not need.
     """
     if path.is_dir():
         found = sorted(str(each.relative_to(path)) for each in path.glob("**/policy_state.pkl"))
@@ -284,7 +284,7 @@ def _weights(content: Any, key: str | None) -> dict[str, np.ndarray]:
 
 
 def _layers(weights: Mapping[str, np.ndarray]) -> tuple[list[Layer], list[str]]:
-    """The policy's layers in order, and the names of what belongs to the critic or to exploration."""
+    """The policy's layers in order, and the names of arrays for the critic or for exploration."""
     layers, left, used = [], [], set()
     for name, array in weights.items():
         if _CRITIC.search(name):
@@ -350,7 +350,7 @@ def _activation(source: Source, layers: list[Layer]) -> str:
 
 @dataclass
 class Policy:
-    """A policy that was found in a file."""
+    """A policy found in a file."""
 
     trainer: str
     layers: list[Layer]
@@ -383,7 +383,7 @@ def _picks(source: Source, outputs: int, continuous: bool) -> list[tuple[int, fl
             )
         lows, highs = [float(low) for low in lows], [float(high) for high in highs]
         if lows == [-1, -1] and highs == [1, 1]:
-            return [(0, 1.0, 0.0), (1, 1.0, 0.0)]  # As Squall's own environments take them.
+            return [(0, 1.0, 0.0), (1, 1.0, 0.0)]  # The format of Squall's own environments.
         return [(1, 1 / 180.0, 0.0), (0, 2.0 / highs[0], -1.0)]
     if continuous:
         if outputs not in (2, 4):

@@ -55,7 +55,7 @@ class Recreated:
 
 
 class Game:
-    """The only game of an environment. It stays as it is when it ends, until it is reset."""
+    """The only game of an environment. When it ends, it keeps its final state until it is reset."""
 
     def __init__(
         self,

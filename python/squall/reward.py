@@ -13,7 +13,7 @@ from squall import _native
 
 
 class Event(NamedTuple):
-    """An event of the last step, such as a tag. Events are those of recordings, with the same names."""
+    """An event of the last step, such as a tag. Recordings contain the same events, with the same names."""
 
     name: str
     """"grabbed", "captured", "tagged", "untagged", "flag_returned", "left_field", "collided", "ended", …"""

@@ -45,7 +45,7 @@ class Options(TypedDict, total=False):
     episode_max_s: float | None
     """Time after which an episode is truncated (`truncated`), s. None (default): whole games."""
     starts: int | None
-    """The number of different starts, which repeat, so that new games are cheap. None (default): a new start for every game."""
+    """The number of different starts, used in rotation, so that new games are cheap. None (default): a new start for every game."""
     team: str | None
     """The name of the learning team. None (default): alternates with the seed."""
     opponents: Opponents

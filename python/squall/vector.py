@@ -46,8 +46,8 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
     `autoreset_mode="NextStep"`, for wrappers such as `NormalizeObservation`, the last observation is the step's own; the next step
     returns the first one of the new game, and ignores the actions of its rows.
 
-    `info["counts"]` (num_envs,) is whether a row's next action takes effect: a tagged boat drives home whatever its action, and against a
-    strategy the enemies need no actions (their rows are 0). A policy should ignore samples where it is False; a critic should learn from
+    `info["counts"]` (num_envs,) says whether a row's next action takes effect: a tagged boat drives home whatever its action, and
+    against a strategy the enemies need no actions (their rows are 0). A policy should ignore samples where it is False; a critic should learn from
     them, or it misjudges being tagged. With discrete actions, `info["action_mask"]` has 1 for each possible action of each boat: only the
     last one if none takes effect. `info["seed"]` (num_envs,) is the seed of the game.
 

@@ -1,4 +1,4 @@
-//! Work done without the interpreter's lock, which Ctrl-C can interrupt.
+//! Work that runs without the interpreter's lock and can be interrupted by Ctrl-C.
 
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -118,7 +118,7 @@ def test_a_hostile_file_is_refused_and_nothing_runs(
     weights = {"actor.0.weight": np.zeros((17, 61), np.float32), "actor.0.bias": np.zeros(17, np.float32)}
     name = f"{function.__module__}.{function.__name__}"
     if function is getattr:
-        data = b"\x80\x02cbuiltins\ngetattr\n(cos\nsystem\nVname\ntR."  # By its name: modules cannot be pickled.
+        data = b"\x80\x02cbuiltins\ngetattr\n(cos\nsystem\nVname\ntR."  # Pickled by name: modules cannot be pickled.
     else:
         data = pickle.dumps({"weights": weights, "extra": _Call(function, argument(str(made)))})
     for file in (tmp_path / "policy_state.pkl", tmp_path / "policy.pt"):

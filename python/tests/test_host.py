@@ -200,7 +200,7 @@ def test_an_entry_ends_with_its_host_even_if_it_is_busy_and_has_children(tmp_pat
 
 
 def is_running(pid: int) -> bool:
-    """Whether a process runs; one that waits to be collected does not."""
+    """Whether a process is running; a zombie is not."""
     state = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=False).stdout
     return state.strip()[:1] not in ("", "Z")
 

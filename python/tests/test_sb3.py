@@ -72,7 +72,7 @@ def test_rows_are_those_of_the_vector(sb3: ModuleType) -> None:
 
 def test_ppo_learns(sb3: ModuleType) -> None:
     ppo = pytest.importorskip("stable_baselines3.ppo").PPO
-    # More threads wait for each other in tiny networks.
+    # With tiny networks, several threads mostly wait for each other.
     pytest.importorskip("torch").set_num_threads(1)
     from stable_baselines3.common.evaluation import evaluate_policy
     from stable_baselines3.common.vec_env import VecMonitor

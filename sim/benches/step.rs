@@ -19,7 +19,8 @@ fn shipped(game: &str) -> Scenario {
     scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// All boats circle at speed, each differently, so that every part of the step has work to do.
+/// Orders that make all boats circle at speed, each differently, so that every part of the step is
+/// exercised.
 fn circling(world: &World, tick: u64) -> Vec<Order> {
     let count = world.state().boats.len();
     let heading_rad = |i: usize| (tick as f64 * 0.02 + i as f64) % 6.0 - 3.0;
@@ -37,7 +38,7 @@ const SENSOR_PERIOD: u64 = 2;
 /// Boats restart after this many ticks (two minutes), before they leave the field.
 const VOYAGE: u64 = 2_400;
 
-/// One step of a run from this state.
+/// Advances a run from `start` by one step; the run restarts after [`VOYAGE`] ticks.
 fn sail(world: &mut World, start: &State, orders: &mut Vec<Order>) -> usize {
     if world.state().tick == VOYAGE {
         world.set_state(start.clone());
@@ -68,8 +69,8 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-/// In a fresh breeze with 64 wave components, gusts, a current and all sensors; then with flawed
-/// thrusters and a battery as well.
+/// The step in a fresh breeze with 64 wave components, gusts, a current and all sensors; then with
+/// flawed thrusters and a battery as well.
 fn rough(c: &mut Criterion) {
     let afloat = shipped("pav01_afloat.toml")
         .of_seed(1)

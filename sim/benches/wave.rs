@@ -1,5 +1,5 @@
-//! The waves at one boat, by number of components: horizontal plane, attitude, bare surface. The
-//! first two also by instruction set.
+//! The cost of the waves at one boat, by number of components: forces in the horizontal plane,
+//! attitude, and surface alone. The first two also by instruction set.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use primitives::frame::{Ned, Pose};
@@ -22,7 +22,7 @@ fn waves(components: u32) -> Waves {
     }
 }
 
-/// Poses all over a field, on all headings, like those of a fleet.
+/// Poses all over a field, on all headings, as in a large fleet.
 fn poses() -> Vec<Pose> {
     let pose = |i: u32| Pose {
         at: Ned {

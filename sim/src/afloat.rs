@@ -1,8 +1,7 @@
 //! A game without a referee, for `squall sim --afloat`: some of its boats float in its sea.
 //!
-//! Emulated boats are in this water while their game treats them as real. Sea, boats and sensors
-//! are as in
-//! the game. Tags, flags, radio and limits on sharing have no effect.
+//! Emulated boats float in this water while their game treats them as real. Sea, boats and sensors
+//! are as in the game. Tags, flags, radio and limits on sharing have no effect.
 
 use crate::spawn::{self, NoStart};
 use primitives::SimTime;

@@ -28,8 +28,8 @@ impl AutopilotModel {
     pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
         let inertia = hull.m_yaw;
         let omega = autopilot.heading_bandwidth_rad_s;
-        // Pole placement for a second-order system: the thrusters need not add the damping that the
-        // hull has itself.
+        // Pole placement for a second-order system: the thrusters need not add damping that the
+        // hull already provides.
         let wanted_damping = 2.0 * autopilot.heading_damping * omega * inertia;
         let surge_per_m_s = hull.m_surge / autopilot.speed_time_s;
         AutopilotModel {

@@ -29,7 +29,7 @@ impl BatteryModel {
         }
     }
 
-    /// Thrust factor at a charge.
+    /// Thrust factor at this charge.
     #[inline]
     pub fn thrust_factor(&self, charge: f64) -> f64 {
         1.0 - self.sag * (1.0 - charge)
@@ -41,7 +41,7 @@ impl BatteryModel {
         // Not `powf`, whose last bit differs between platforms.
         let [port, starboard] = shares.map(|share| share * share.sqrt());
         let spent = self.hotel_per_tick + self.full_per_tick * 0.5 * (port + starboard);
-        // An empty battery continues to supply: the loss shows as reduced thrust.
+        // An empty battery still supplies power: the loss shows as reduced thrust.
         *charge = (*charge - spent).max(0.0);
     }
 }

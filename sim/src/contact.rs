@@ -27,7 +27,7 @@ const CLOSING_MAX_M_S: f64 = 8.0;
 /// Distance beyond rapier's look-ahead within which hulls are passed to rapier, m.
 const SPARE_M: f64 = 0.05;
 /// Thickness of a wall, and how far it extends beyond the corners, m.
-// Thick, so that no boat is pushed out on the far side within one tick.
+// Walls are thick, so that no boat is pushed out on the far side within one tick.
 const WALL_M: f64 = 10.0;
 /// Restitution and friction between hulls: fendered fibreglass, wet.
 const RESTITUTION: f64 = 0.1;
@@ -123,8 +123,8 @@ struct Entry {
 }
 
 impl ContactModel {
-    /// The shapes of these kinds of boat, given by length and beam (m), on this field. Hulls that
-    /// are not solid pass through each other.
+    /// The shapes of boats of these kinds (length and beam, m) and of this field. Hulls that are
+    /// not solid pass through each other.
     pub fn new(
         hulls: impl Iterator<Item = (f64, f64)>,
         field: &Field,
@@ -132,8 +132,8 @@ impl ContactModel {
         dt_s: f64,
     ) -> ContactModel {
         let hull = |(length_m, beam_m): (f64, f64)| {
-            // A capsule, because rapier resolves it at about half the cost of a box, and a bow is
-            // more round than square.
+            // Use a capsule, because rapier resolves it at about half the cost of a box, and a bow
+            // is more round than square.
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
             HullShape {
@@ -168,8 +168,8 @@ impl ContactModel {
         }
     }
 
-    /// Passes hulls closer than `close_m` to rapier, possibly more than necessary. The results must
-    /// not change.
+    /// Passes hulls closer than `close_m` to rapier, even where that is unnecessary. The results
+    /// must not change.
     #[doc(hidden)]
     pub fn widen(&mut self, close_m: f64) {
         self.close_m = self.close_m.max(close_m);
@@ -192,8 +192,8 @@ impl ContactModel {
         if touches.is_empty() {
             return;
         }
-        // In vehicle order, each boat once, with the direction of its nearest neighbour: other
-        // boats passed to rapier must not affect the result.
+        // Process boats in vehicle order, each once, with the direction of its nearest neighbour:
+        // other boats passed to rapier must not affect the result.
         touches.sort_by(|a, b| {
             a.boat
                 .cmp(&b.boat)
@@ -460,8 +460,8 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
 
 /// Reads a boat back from rapier's world. Without an active contact, the boat keeps our motion.
 ///
-/// Uses rapier's impulse rather than its change of velocity: a push on the bow quarter moves a hull
-/// with more mass across than along in a direction other than the push. Taking the change of
+/// Uses rapier's impulse rather than its change of velocity: a hull has more mass across than
+/// along, so an oblique push does not move it in the direction of the push. Using the change of
 /// velocity along the push would add energy.
 fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &mut Displacement) {
     let body = &world.bodies[entry.body];
@@ -483,7 +483,7 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
         east: at.y,
     };
     displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
-    // Not rapier's sine and cosine, because a snapshot contains only the angle.
+    // Do not use rapier's sine and cosine: a snapshot contains only the angle.
     displacement.rotation_to = displacement.to.rotation();
     let impulse = (body.linvel() - entry.velocity) * entry.mass_kg;
     let impulse = frame::body_from_ned(

@@ -81,7 +81,7 @@ impl Track {
             yaw: nav.yaw_rate_rad_s,
         };
         // A fix may be later than the world's tick; then this extrapolates back a little. After a
-        // second the boat is assumed to rest at its position.
+        // second the boat is assumed to stay at its position.
         let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
         let pose = dead_reckoned(nav.pose(), nu, span.as_s());
         Some((
@@ -176,7 +176,7 @@ mod tests {
             back.at.distance(from.at) < 1e-9 && (back.psi_rad - from.psi_rad).abs() < 1e-9,
             "{back:?}"
         );
-        // Many steps reach the same place as one step, and backward steps return.
+        // Many steps reach the same place as one step, and backward steps return to the start.
         for yaw in [0.4, 0.0, 1e-6, -3.0] {
             let nu = Planar { yaw, ..nu };
             let stepped = (0..20).fold(from, |pose, _| dead_reckoned(pose, nu, 0.05));

@@ -97,7 +97,7 @@ impl FlawState {
     /// Sends `settings`; returns the settings that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {
-        // As long as the latency: with one push and one pop per tick, it never grows.
+        // The queue is as long as the latency: with one push and one pop per tick, it never grows.
         self.under_way.push_back(settings);
         self.under_way.pop_front().unwrap_or(settings)
     }
@@ -105,7 +105,8 @@ impl FlawState {
 
 /// Thrust factor of a propeller with this much water above it: 1 from half the still-water depth
 /// on, decreasing linearly to 0 at the surface. The measured loss depends on depth and propeller
-/// radius (Minsaas, Faltinsen and Persson 1983), but is not published for such small propellers.
+/// radius (Minsaas, Faltinsen and Persson 1983), but there are no published data for such small
+/// propellers.
 #[inline]
 pub fn wetness(ventilation: Ventilation, water_above_m: f64) -> f64 {
     (water_above_m / (0.5 * ventilation.depth_m)).clamp(0.0, 1.0)

@@ -6,13 +6,14 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// The number of single-precision numbers in the widest registers: wave components side by side.
+/// Single-precision numbers in the widest registers: this many wave components are computed side by
+/// side.
 // Crates such as `wide` choose the registers at compile time; with plain arrays the choice is made
 // at run time.
 pub(crate) const LANES: usize = 16;
 
-/// Components of a row. Sums over components are kept separately by position in the row, so that
-/// they do not wait for each other.
+/// Components of a row. Each position in the row has its own partial sum over the components, so
+/// that the additions do not wait for each other.
 pub(crate) const ROW: usize = 4;
 
 /// Rows side by side, or the number of values for each component of a row.
@@ -130,7 +131,7 @@ impl Lanes<f32> {
     #[inline(always)]
     pub(crate) fn sum(&self, number: usize) -> f64 {
         let at = |place: usize| f64::from(self.0[ROW * number + place]);
-        // The same order on every machine: a sum of four parts, whatever the register width.
+        // Use the same order on every machine: a sum of four parts, whatever the register width.
         (at(0) + at(1)) + (at(2) + at(3))
     }
 }

@@ -100,8 +100,8 @@ impl Model {
             .iter()
             .map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
-        // Boats without sensors keep no readings, which would waste memory in large fleets of
-        // perfect boats.
+        // No readings are kept for boats without sensors: they would waste memory in large fleets
+        // of such boats.
         let is_sensed = plan
             .vehicles
             .iter()
@@ -316,7 +316,7 @@ impl Model {
         )
     }
 
-    /// The same for a point boat.
+    /// Like [`Model::hull_moved`], for a point boat.
     pub(crate) fn point_moved(
         &self,
         from: Pose,

@@ -41,7 +41,7 @@ pub struct Motion<T = f64> {
     pub turn_rad: T,
 }
 
-/// The same for boats side by side.
+/// Planar quantities of boats side by side.
 type Planars<const N: usize> = Planar<Lanes<f64, N>>;
 type Forcings<const N: usize> = Forcing<Lanes<f64, N>>;
 type Motions<const N: usize> = Motion<Lanes<f64, N>>;
@@ -78,7 +78,7 @@ impl Fleet {
         }
     }
 
-    /// Uses these instructions, which affect only how fast it computes.
+    /// Uses these instructions, which affect only how fast it runs.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
@@ -128,7 +128,8 @@ impl Fleet {
         motions: &mut [Motion],
     ) {
         let forcings = Forcings::gather(forcings);
-        // Two compiled versions: a branch inside would keep the loop out of vector registers.
+        // There are two compiled versions: a branch inside would keep the loop out of vector
+        // registers.
         let moved = if is_uniform {
             self.instructions.run(Advance::<N, true> {
                 row,
@@ -250,7 +251,7 @@ struct Row<const N: usize> {
     m_cross: Lanes<f64, N>,
     /// m plus the replacement for A22 in the Coriolis terms.
     m_munk: Lanes<f64, N>,
-    /// The same minus A11: the Munk moment.
+    /// The replacement for A22 minus A11, for the Munk moment.
     munk: Lanes<f64, N>,
     inverse_surge: Lanes<f64, N>,
     inverse_sway: Lanes<f64, N>,
@@ -341,10 +342,10 @@ impl<const N: usize> Row<N> {
 
     /// Cross-flow drag in sway and yaw (strip theory): ½ρ C_d T ∫ [1, x] |v + x r| (v + x r) dx.
     ///
-    /// The integral is in closed form instead of over strips. Let s = r L/2 be the cross-flow that
-    /// the turn adds at the bow. If |s| ≤ |v|, the flow has one sign along the hull and the
-    /// integrand is a polynomial; if |s| > |v|, the sign changes at x = −v/r, where two polynomials
-    /// meet.
+    /// The integral is computed in closed form rather than strip by strip. Let s = r L/2 be the
+    /// cross-flow that the turn adds at the bow. If |s| ≤ |v|, the flow has one sign along the hull
+    /// and the integrand is a polynomial; if |s| > |v|, the sign changes at x = −v/r, where two
+    /// polynomials meet.
     #[inline(always)]
     fn crossflow(&self, v: Lanes<f64, N>, r: Lanes<f64, N>) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let number = Lanes::<f64, N>::splat;

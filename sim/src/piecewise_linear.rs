@@ -46,7 +46,7 @@ impl PiecewiseLinear {
             .iter()
             .map(|piece| piece.end - piece.at.0)
             .fold(width, f64::min);
-        // As fine as the narrowest piece, so that a cell contains at most one border.
+        // Cells are as fine as the narrowest piece, so that a cell contains at most one border.
         let cells = ((width / narrowest).ceil() as usize).clamp(1, CELLS_MAX);
         let piece_at = |x: f64| {
             pieces[..pieces.len() - 1]
@@ -78,7 +78,7 @@ impl PiecewiseLinear {
         let cell = ((x - self.first.0) * self.per_x) as usize;
         let mut i = usize::from(self.index[cell.min(self.index.len() - 1)]);
         // A cell contains at most one border unless the pieces are very uneven. Unlike a branch,
-        // the sum is never mispredicted.
+        // the addition is never mispredicted.
         i += usize::from(x >= self.pieces[i].end);
         while x >= self.pieces[i].end {
             i += 1;

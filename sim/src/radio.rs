@@ -2,7 +2,7 @@
 //!
 //! All random values derive from the seed, by vehicle, direction and decision. Losses are therefore
 //! the same in one process and over a network, whatever else is sent. Delays and losses of the real
-//! network come on top.
+//! network are added to these.
 
 use crate::two_state::TwoStateChain;
 use messages::Order;
@@ -60,7 +60,7 @@ struct Line {
 /// A message in transit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Sent<T> {
-    /// The decision at which it was sent.
+    /// The decision at which the message was sent.
     decision: u64,
     arrival: SimTime,
     message: T,
@@ -227,8 +227,8 @@ impl Radio {
         let is_out_of_range = link
             .range_m
             .is_some_and(|range_m| at.distance(link.station) > range_m);
-        // Look it up by vehicle and decision instead of drawing in sequence, so that other boats'
-        // messages shift no numbers.
+        // Look up the random number by vehicle and decision instead of drawing in sequence: other
+        // boats' messages must not shift it.
         if is_out_of_range || noise.unit(draw) < share {
             return None;
         }
@@ -312,8 +312,8 @@ mod tests {
             radio.open_next();
         }
         let n = n as f64;
-        // Closed forms: bad for 2 of 10 s; a stay sampled every tenth of a second lasts
-        // tenth / (1 - stay).
+        // Closed forms: bad for 2 of 10 s; sampled every tenth of a second, a stay in one state
+        // lasts `tenth / (1 - stay)` on average.
         assert!((bad / n - 0.2).abs() < 0.01, "{}", bad / n);
         for lost in lost {
             assert!(

@@ -68,8 +68,8 @@ impl GameRecorder {
         } else {
             vec![]
         };
-        // Pass it on unencoded: a different thread encodes and writes it, so that the disk never
-        // delays a game.
+        // Pass the decision on unencoded: another thread encodes and writes it, so that the disk
+        // never delays a game.
         recorder.record(Entry::Decision(Box::new(Decision {
             frame,
             pictures,

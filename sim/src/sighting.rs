@@ -84,7 +84,7 @@ impl Sightings {
         while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
         }
-        // Reuse it, so that a tick allocates nothing.
+        // Reuse a buffer, so that a tick allocates nothing.
         let mut now = self.spare.pop().unwrap_or_default();
         now.clear();
         now.extend(boats);
@@ -114,7 +114,7 @@ impl Sightings {
         let own = &boats[seer];
         let teams = known.len() as u64;
         let known = &mut known[own.team.index()];
-        // By team, not by seer, so that two sightings of a boat do not average out the noise.
+        // Drawn by team, not by seer, so that two sightings of a boat do not average out the noise.
         let draw = 4 * (decision * teams + own.team.index() as u64);
         for (seen, known) in boats
             .iter()
@@ -159,7 +159,8 @@ fn sees(sharing: &Sharing, own: &Contact, other: &Contact) -> bool {
 }
 
 fn blurred(sharing: &Sharing, seen: Contact, noise: Noise, draw: u64) -> Contact {
-    // Distinct from the counters of units: a pair uses units at twice its count.
+    // A pair uses the uniform numbers at twice its count: the offset keeps these apart from those
+    // that are used directly.
     let (north, east) = noise.normal_pair(draw / 2 + (1 << 60));
     let (velocity_north, velocity_east) = noise.normal_pair(draw / 2 + 1 + (1 << 60));
     Contact {

@@ -66,8 +66,8 @@ pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, Spaw
                 let from_port_m = stream.between(across_m.0, across_m.1);
                 scenario.field.seen_from(vehicle.team, along_m, from_port_m)
             };
-            // Rejection sampling, not a grid: every free place is equally likely, and a full field
-            // is an error.
+            // Use rejection sampling, not a grid: every free place is equally likely, and a full
+            // field is an error.
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
             let at = at.ok_or_else(|| SpawnError {
                 vehicle: vehicle.name.clone(),

@@ -34,7 +34,7 @@ pub struct BoatState {
     pub pose: Pose,
     /// Velocity over the ground in body axes.
     pub nu: Planar,
-    /// Change of `nu` in the last tick, as felt by accelerometers.
+    /// Change of `nu` in the last tick, as measured by accelerometers.
     pub nu_change: Planar,
     /// Port thruster.
     pub port: Shaft,

@@ -52,7 +52,8 @@ pub struct WorldPlan<'a> {
     pub sensor_period: SimTime,
     /// Whether boats collide with each other rather than only with walls and obstacles.
     pub boats_are_solid: bool,
-    /// Distance below which [`World::pairs`] lists all pairs of boats, possibly among others, m.
+    /// Distance (m) within which [`World::pairs`] lists every pair of boats; it may also list
+    /// others.
     pub pairs_within_m: f64,
     /// Seeds of the randomness of sea and sensors.
     pub seeds: Seeds,
@@ -125,8 +126,8 @@ impl World {
     /// [`NoStart`] if the boats do not fit into their spawn area, or the randomised values are
     /// inconsistent.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
-        // The seed first: a file may randomise values, and everything below depends on the drawn
-        // game.
+        // Apply the seed first: a file may randomise values, and everything below depends on the
+        // drawn game.
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
         let seeds = scenario.seeds();
@@ -240,8 +241,8 @@ impl World {
                     .displacements
                     .get(i)
                     .map_or(boat.pose.at, |displacement| displacement.from.at);
-                // As in Pyquaticus: back to the point of entry, turned along the circle, with the
-                // tangential part of its velocity.
+                // As in Pyquaticus, the boat returns to its point of entry and turns along the
+                // circle, with the tangential part of its velocity.
                 boat.pose.at = way_back(
                     (came_from, boat.pose.at),
                     centre,
@@ -365,11 +366,11 @@ impl World {
     }
 
     fn find_pairs(&mut self) {
-        // One search for both, with the larger reach: with many boats the search dominates the
+        // One search with the larger reach serves both: with many boats the search dominates the
         // cost.
         let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
-        // At the end of a tick, for the next tick and for the referee: both need close pairs at the
-        // same positions.
+        // Search at the end of a tick, for the next tick and for the referee: both need close pairs
+        // at the same positions.
         let boats = &self.state.boats;
         let pairs = self
             .work
@@ -470,7 +471,7 @@ impl World {
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
-                // It stays at its last valid position, where others may hit it.
+                // The boat stays at its last valid position, where others may hit it.
                 *boat = BoatState {
                     pose: boat.pose,
                     quarantined: true,

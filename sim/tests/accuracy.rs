@@ -90,9 +90,9 @@ fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
 
 #[test]
 fn whatever_water_a_hull_carries_along_it_stays_stable_in_a_gale() {
-    // Three times its own mass or moment of inertia, in each direction and in all. Added mass
-    // applied as a force from the last acceleration diverges at one. Waves may carry a boat along,
-    // but no faster than the crests of a gale.
+    // Added mass of three times the boat's own mass or moment of inertia, in each direction and in
+    // all. Applied as a force computed from the last acceleration, it would already diverge at one.
+    // Waves may carry a boat along, but no faster than the crests of a gale.
     for (surge, sway, yaw) in [
         (3.0, 1.0, 1.0),
         (0.1, 3.0, 1.0),

@@ -193,9 +193,9 @@ const ORDERS: [Order; 3] = [
 
 #[test]
 fn the_energy_changes_by_what_thrust_puts_in_and_resistance_takes_out() {
-    // From rest, then with a second order, in still water and in a current, where motion through
-    // the water counts. Integrals by Simpson's rule over pairs of ticks, which are short because
-    // shafts respond quickly. The Surveyor's Munk factor is not 1.
+    // The boat starts from rest and later gets a second order, in still water and in a current,
+    // where motion through the water counts. Integrals by Simpson's rule over pairs of ticks, which
+    // are short because shafts respond quickly. The Surveyor's Munk factor is not 1.
     const TICK_S: f64 = 0.005;
     let stream = Ned {
         north: 0.3,

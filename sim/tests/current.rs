@@ -118,7 +118,7 @@ fn a_shear_grows_across_and_turns_a_hull_that_lies_across() {
             "y = {y}: {got:?}"
         );
     }
-    // Seen from above, the water south of a place flows east faster. A hull that points north is
+    // Seen from above, the water farther south flows east faster. A hull that points north is
     // turned anticlockwise by the whole shear; one that points east is not turned.
     let now = model.at_time(SimTime::ZERO);
     for (heading_deg, want_rad_s) in [(0.0, -0.004), (180.0, -0.004), (90.0, 0.0), (45.0, -0.002)] {
@@ -151,7 +151,7 @@ fn eddy_at(centre: Ned) -> Current {
 fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
     let centre = Ned::from_xy(40.0, -10.0);
     let model = model(&eddy_at(centre), 1);
-    // Γ from the fastest flow, Γ / (2 π a) (1 − e^−α) / √α, with both numbers from the literature:
+    // Γ from the fastest flow, Γ / (2 π a) (1 − e^−α) / √α; in the literature, (1 − e^−α) / √α is
     // 0.6382.
     let gamma = PEAK_M_S * TAU * CORE_M / 0.638_173;
     for radius_m in [1.0, 10.0, CORE_M, 60.0, 125.0, 127.0, 500.0] {

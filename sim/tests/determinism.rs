@@ -84,7 +84,8 @@ fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
         let mut contest = started(scenario, 3);
         let mut collisions = 0;
         for leg in 0..*legs {
-            // Every other time in the middle of a decision, after the pictures.
+            // In every other round, take the snapshot in the middle of a decision, after the
+            // pictures.
             if leg % 2 == 1 {
                 contest.pictures();
             }

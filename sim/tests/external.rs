@@ -281,7 +281,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
         ..nav(50.0, 40.0, 0.0, u)
     };
     contest.advance();
-    // Taken 0.1 s ago and delayed since then.
+    // A fix taken 0.1 s ago and delayed since then.
     let fix_at = contest.now() - SimTime::from_s(0.1);
     contest
         .report(REAL, fix, fix_at, true)
@@ -413,7 +413,7 @@ fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
             starboard: 1.0,
         },
     );
-    // In the keep-out circle of its own flag.
+    // The boat is in the keep-out circle of its own flag.
     for _ in 0..50 {
         report(&mut contest, nav(22.0, 40.0, 30.0, 0.0));
         contest.advance();

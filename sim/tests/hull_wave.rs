@@ -185,8 +185,8 @@ fn off_between_headings(field: &WaveField, boat: &Boat) -> [f64; 4] {
 
 #[test]
 fn between_the_headings_of_the_table_the_error_is_a_small_part_of_the_motion() {
-    // For the shipped boats at most 0.4 %, in yaw. The response of a long hull to waves several
-    // times shorter varies faster with heading than the table, but is small.
+    // For the shipped boats the error is at most 0.4 %, in yaw. The response of a long hull to
+    // waves several times shorter varies too fast with heading for the table, but is small.
     let heron = (boat(1.35, 1.0, 0.1), 0.005);
     let surveyor = (surveyor(), 0.005);
     let otter = (boat(2.0, 1.08, 0.195), 0.005);
@@ -312,9 +312,9 @@ fn the_drift_force_comes_in_groups_about_the_closed_mean() {
 #[test]
 fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
     // Hs and Tp; rms orbital velocity at a point and over the hull; rms slope; Stokes drift at the
-    // surface; mean drift force beam-on and head-on, for 1.8 m by 0.9 m by 0.14 m. From a separate
-    // calculation for long-crested waves from 0.6 to 3.5 peak frequencies. The band here extends to
-    // 5, so quantities that weight high frequencies are larger by up to a sixth.
+    // surface; mean drift force beam-on and head-on, for 1.8 m by 0.9 m by 0.14 m. The values come
+    // from a separate calculation for long-crested waves from 0.6 to 3.5 peak frequencies. The band
+    // here extends to 5, so quantities that weight high frequencies are larger by up to a sixth.
     let rows = [
         (0.2, 2.0, 0.19, 0.13, 5.7, 0.036, 5.7, 2.8),
         (0.3, 2.5, 0.23, 0.18, 5.4, 0.041, 6.8, 3.4),

@@ -115,7 +115,7 @@ fn orders_sent_beyond_the_range_do_not_arrive() {
     let mut outside = 0;
     let mut want = Order::Hold;
     for k in 0..400_u32 {
-        // A heading to the east, and the decision at which the order was given.
+        // A heading to the east, at a speed that encodes the decision at which the order was given.
         let heading_rad = std::f64::consts::FRAC_PI_2;
         let order = Order::Steer {
             heading_rad,

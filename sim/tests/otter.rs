@@ -96,8 +96,8 @@ fn it_accelerates_as_the_reference_does() {
     assert!(error < 0.005, "position error {:.3} %", error * 100.0);
 }
 
-/// Its velocity at every tick for this many seconds under these shaft speeds, from rest, and the
-/// final world.
+/// The Otter's velocity at every tick for this many seconds under these shaft speeds, from rest,
+/// and the final world.
 fn from_rest(n_rad_s: [f64; 2], seconds: u32) -> (Vec<[f64; 3]>, World) {
     let mut world = World::of_game(&common::alone("otter", "calm_salt"), 1).expect("the boats fit");
     let step = |_| {
@@ -169,7 +169,7 @@ fn it_spins_on_the_spot_under_opposed_shafts() {
     let astern = -70.0 * (0.01108_f64 / 0.006445).sqrt();
     let (_, mut world) = from_rest([70.0, astern], 60);
     let mut around = || {
-        // One turn, to the tick.
+        // One turn, to the nearest tick.
         let rate = world.state().boats[0].nu.yaw;
         let ticks = (std::f64::consts::TAU / (0.05 * rate)).round() as u32;
         let mut middle = Ned::default();

@@ -68,7 +68,8 @@ fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
 #[test]
 fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
     // Full ahead from (40, 70) to the north: when it leaves, how long it remains outside, and when
-    // it is untagged, with looks at every step of 0.1 s and, as in the competition, at every tenth.
+    // it is untagged, with checks at every step of 0.1 s and, as in the competition, at every
+    // tenth.
     for (boat, speed_m_s, looks_s, want_s) in [
         ("heron", 2.0, 0.0, [8.9, 8.8, 28.6]),
         ("heron", 2.0, 1.0, [9.0, 9.0, 29.0]),
@@ -232,7 +233,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
             step(&mut contest, steer(90.0, 2.0));
             gap_m = gap_m.min(common::gap_m(contest.world(), &scenario, 0, 1));
         }
-        // Their keels pass half a metre apart, and the hulls are a metre wide.
+        // Their centre lines pass half a metre apart, and the hulls are a metre wide.
         let want_m = if contact == Contact::Ghost {
             -0.5..-0.45
         } else {

@@ -51,7 +51,7 @@ fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() 
     assert!((0.08..0.3).contains(&rms), "oscillates at {rms} m/s");
     assert!(mean.length() < 0.08, "mean velocity {mean:?} m/s");
     // First-order motion is proportional to the height and has no mean: in waves a tenth as high a
-    // boat oscillates a tenth as fast, and a hundredth of the rest remains.
+    // boat oscillates a tenth as fast, and a hundredth of the second-order motion remains.
     let (small_mean, small_rms) = adrift(0.03, 4);
     assert!(
         (small_rms / rms - 0.1).abs() < 0.01,
@@ -65,8 +65,8 @@ fn a_drifter_in_waves_goes_to_and_fro_and_only_second_order_takes_it_anywhere() 
 
 #[test]
 fn boats_in_waves_heave_at_the_frequency_of_encounter() {
-    // One long-crested wave of about 2.5 s from ahead, abeam and astern, at held speeds: ω − k V
-    // cos, with the resulting V.
+    // One long-crested wave of about 2.5 s from ahead, abeam and astern, at constant speeds: the
+    // frequency of encounter is ω − k V cos, with the resulting V.
     let samples = 2_048_usize;
     let dt_s = 0.05;
     let resolution = TAU / (samples as f64 * dt_s);

@@ -78,8 +78,8 @@ fn it_is_as_fast_as_its_thrust_map_says() {
 
 #[test]
 fn it_turns_on_one_thruster_as_its_parameters_predict() {
-    // Predicted with all of A22 in surge's Coriolis term: 1.90 m/s. Here the Munk factor acts there
-    // too, so that the inertia terms do no work, which makes a difference of 0.04 m/s.
+    // Predicted with all of A22 in surge's Coriolis term: 1.90 m/s. Here the Munk factor applies to
+    // that term, too, so that the inertia terms do no work; this makes a difference of 0.04 m/s.
     let nu = sail(
         &mut afloat(AT_REST),
         Order::Thrust {

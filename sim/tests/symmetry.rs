@@ -39,7 +39,7 @@ fn turned(v: Ned, by_rad: f64) -> Ned {
     }
 }
 
-/// The scenario with north moved `by_rad` to port: everything turns to starboard about the datum.
+/// The scenario rotated clockwise by `by_rad` about the datum.
 fn with_all_turned(mut scenario: Scenario, by_rad: f64) -> Scenario {
     let sea = &mut scenario.sea;
     for from_rad in [
@@ -183,10 +183,10 @@ fn it_does_not_matter_where_north_is() {
 
 #[test]
 fn it_does_not_matter_which_side_is_port() {
-    // Mirrored at the meridian of the datum: east, heading, sway and yaw change sign. Exact without
-    // waves; with them in single precision, because a heading and its mirror image lie between
-    // different entries of the table. Waves come from a single direction, because spread directions
-    // are drawn at random and not mirrored.
+    // The scene is mirrored at the meridian of the datum: east, heading, sway and yaw change sign.
+    // Exact without waves; with them in single precision, because a heading and its mirror image
+    // lie between different entries of the table. Waves come from a single direction, because
+    // spread directions are drawn at random and not mirrored.
     let sail = |side: f64, has_waves: bool| {
         let mut scenario = surveyor_on(|sea| {
             sea.current.mean_m_s = Ned {
@@ -272,7 +272,7 @@ fn it_does_not_matter_which_side_is_port() {
 
 #[test]
 fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
-    // With imposed thrust: the front seat steers by motion over the ground, which a current
+    // Thrust is imposed, because the front seat steers by motion over the ground, which a current
     // changes.
     let current = Ned {
         north: 0.35,

@@ -89,8 +89,13 @@ fn head(summary: &Summary) -> String {
     add_line(
         &mut text,
         format_args!(
-            "recorded {} by Squall {version} ({commit})",
-            utc::text(summary.began_utc_ns)
+            "recorded {} by {}",
+            utc::text(summary.began_utc_ns),
+            if commit.is_empty() {
+                "other programs".to_owned()
+            } else {
+                format!("Squall {version} ({commit})")
+            }
         ),
     );
     let megabytes = *bytes as f64 * 1e-6;

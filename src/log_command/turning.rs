@@ -11,7 +11,7 @@ use scenario::{Kind, load_file};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Number of futures for the curve per game for the comparison of boats.
+/// Ratio of the number of futures for the curve to the number of games for comparing each boat.
 const FUTURES_PER_GAME: usize = 20;
 /// Maximum number of values that the curve shows.
 const CURVE_COLUMNS: usize = 60;

@@ -17,7 +17,7 @@ pub(crate) fn squall(args: &[&str]) -> Result<Command> {
     squall_with(bus::RUNTIME, args)
 }
 
-/// A command that starts this program with these zenoh threads.
+/// A command that starts this program with these zenoh thread settings.
 pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
     let mut command =
         Command::new(std::env::current_exe().context("cannot find this program's executable")?);
@@ -118,7 +118,7 @@ impl ChildProcess {
         Some((!status.success()).then(|| format!("{} failed: {status}", self.name)))
     }
 
-    /// Sends a line to its standard input.
+    /// Sends a line to the child's standard input.
     ///
     /// # Errors
     /// If the child no longer reads input.

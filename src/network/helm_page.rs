@@ -77,7 +77,7 @@ fn proposal(policy: &PolicyReport) -> String {
     }
 }
 
-/// One line: mode, decision, and its utility for each function.
+/// One line: mode, decision, and its utility for each objective function.
 pub(super) fn line(scenario: &Scenario, report: &HelmReport) -> String {
     let name = &scenario.vehicles[report.vehicle.index()].name;
     let utility = |function: &FunctionReport| {

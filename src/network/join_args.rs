@@ -1,5 +1,4 @@
-//! Command line arguments of a process that decides for boats: the game, and how long to wait for
-//! it.
+//! Command line arguments of a process that controls boats: the game, and how long to wait for it.
 
 use command_line::leaf_args::LeafArgs;
 use command_line::number::seconds;

@@ -121,7 +121,7 @@ impl PageArgs {
         address_of(page, self.token().unwrap_or_default().as_deref())
     }
 
-    /// The same arguments with the browser opened.
+    /// The same arguments, but opening the browser.
     pub(crate) fn opened(&self) -> PageArgs {
         PageArgs {
             open: true,

@@ -33,7 +33,7 @@ impl ReplayFutures {
         })
     }
 
-    /// Checks the question: a page must not open other files than those it may choose.
+    /// Checks the question: a page must not open files other than those it may choose.
     fn check(&self, question: &Question) -> Result<(), String> {
         let Question {
             at_s, futures, sea, ..

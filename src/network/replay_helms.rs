@@ -93,7 +93,7 @@ impl Helms for ReplayHelms {
     fn modes(&mut self, decision: u64) -> Vec<Option<String>> {
         let vehicles = (0..self.recording.scenario().vehicles.len()).map(VehicleId::at);
         let mode = |vehicle: VehicleId| {
-            // The team's first query has already advanced its teammates.
+            // The first query about a team has already advanced all its minds.
             let (report, _) = self.minds.report_of(vehicle, decision)?;
             Some(report.mode).filter(|mode| !mode.is_empty())
         };

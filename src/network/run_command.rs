@@ -49,7 +49,7 @@ pub(crate) struct Args {
     hardware_loop: LoopArgs,
 }
 
-/// Plays a game to watch.
+/// Plays a game for the user to watch.
 pub(crate) fn demo(page: &PageArgs) -> Result<ExitCode> {
     let words = [
         "run",
@@ -129,7 +129,7 @@ impl Player for Processes<'_> {
         let game = unique_game_name(&scenario.name)?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (game.as_str(), endpoint.as_str());
-        // The sim writes it; this process removes it if it remains empty.
+        // The sim writes the file; this process removes it if it remains empty.
         let file = file.map(NewFile::lend);
         let mut sim = start_sim((args, play), place, file.as_ref().map(LentFile::path))?;
         let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
@@ -160,7 +160,7 @@ impl Player for Processes<'_> {
                 screen::remark(&problem);
             }
         }
-        // Kill the agents that are still searching for the game, whose output would not end.
+        // Kill the agents that are still searching for the game: their output would never end.
         drop(everybody);
         if let Some(report) = &mut report {
             report.run.entry_faults = faults.iter().flatten().collect();
@@ -238,8 +238,8 @@ fn faults_of(line: &str) -> Option<EntryFaults> {
     serde_json::from_str(line).ok()
 }
 
-/// The number of boats for one agent process: the requested number, or more if so many processes
-/// would overload the machine. The game is the same.
+/// The number of boats for one agent process: the requested number, or more if this would start too
+/// many processes for the machine. The game is the same.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))
@@ -311,14 +311,15 @@ fn follow(
             Err(RecvTimeoutError::Disconnected) => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {}
         }
-        // Its last output is printed above.
+        // The page's last output has been printed above.
         if let Some(problem) = page.as_mut().and_then(|page| page.ended()).flatten() {
             bail!(problem);
         }
         if stop.load(Ordering::Relaxed) {
             sim.ask_to_stop();
             asked += 1;
-            // After more than three seconds, at ten polls a second, kill it.
+            // After more than three seconds, at ten polls a second, stop waiting, which kills the
+            // sim.
             if asked > 30 {
                 return Ok(None);
             }

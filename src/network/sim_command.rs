@@ -101,7 +101,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     // Register before the sim answers, so that a node that finds the game also finds its token. If
-    // registration fails, users must only pass the game's address.
+    // registration fails, users only have to pass the game's address.
     let registration = bus::register(&entry);
     if let Err(error) = &registration {
         screen::remark(&format!(
@@ -117,7 +117,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let problem = report.run.recording_problem.clone();
     printer.end(ProgressMessage::Done(Box::new(report)));
     written?;
-    // The parent reads it from the report and prints it itself.
+    // A parent reads the problem from the report and prints it itself.
     if let (Some(problem), false) = (problem, args.for_parent) {
         bail!(problem);
     }

@@ -86,7 +86,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// Shows a report or a recording until Ctrl-C.
 fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
     if args.for_parent {
-        bail!("reports are not shown for a parent process");
+        bail!("a parent process can show only games, not reports");
     }
     if path.extension().is_some_and(|end| end == "mcap") {
         return replay_command::show(path, &args.page);

@@ -70,7 +70,7 @@ impl Panel {
 /// A line through points, with a gap at every non-finite number.
 #[derive(Default)]
 pub(crate) struct Line {
-    /// Its name in the legend; an unnamed line is not listed.
+    /// The line's name in the legend; an unnamed line is not listed.
     pub(crate) name: String,
     /// Points: horizontal and vertical value.
     pub(crate) points: Vec<(f64, f64)>,

@@ -8,8 +8,8 @@ use sim::sea::{Band, SeaModel, band, spectrum};
 use std::path::Path;
 use trial::Sample;
 
-/// Number of spectrum bands: to show the shape of a JONSWAP peak, bands must be 0.15 of the peak
-/// frequency.
+/// Number of spectrum bands: to show the shape of a JONSWAP peak, their width must be 0.15 of the
+/// peak frequency.
 const BANDS: usize = 30;
 /// Number of points of the nominal spectrum.
 const CURVE: usize = 600;
@@ -22,7 +22,7 @@ const WIND_S: u32 = 600;
 const WIND_STEPS_PER_S: u32 = 2;
 /// Time between marks on the track, s.
 const MARK_S: f64 = 60.0;
-/// Distance within which a boat has not drifted, m.
+/// Distance (m) below which a boat counts as not having drifted.
 const STAYS_M: f64 = 0.01;
 
 /// Draws a sea to a file: the spectrum specified in its file, the realised sea, and the track of an

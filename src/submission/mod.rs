@@ -9,9 +9,9 @@ use std::path::Path;
 
 const SOLUTION: &str = include_str!("solution.py");
 const CONFIG: &str = include_str!("gen_config.py");
-/// Teams of the competition.
+/// Boats per team in the competition.
 const TEAM: usize = 3;
-/// Time between its decisions, s.
+/// Time between decisions in the competition, s.
 const PERIOD_S: f64 = 1.0;
 
 /// Writes the entry into `folder`. Returns a message for the user.

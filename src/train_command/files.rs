@@ -262,8 +262,8 @@ impl Files {
     }
 }
 
-/// Opens the table of times without the lines written after the saved state; also returns the last
-/// time.
+/// Opens the table of times and drops the lines written after the saved state; also returns the
+/// last time.
 fn open_times(path: &Path, samples: u64) -> Result<(File, f64)> {
     let text = if samples > 0 && path.exists() {
         read(path)?
@@ -280,7 +280,8 @@ fn open_times(path: &Path, samples: u64) -> Result<(File, f64)> {
     output_file::write(path, "the training", format!("samples,elapsed_s\n{kept}"))?;
     let file = File::options().append(true).open(path);
     let file = file.with_context(|| format!("cannot write to {}", path.display()))?;
-    // A page shows a run as running if its table is locked. Some file systems do not support locks.
+    // A page shows a training run as active while its table is locked. Some file systems do not
+    // support locks.
     drop(file.lock_shared());
     Ok((file, last.unwrap_or(0.0)))
 }

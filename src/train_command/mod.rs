@@ -24,7 +24,7 @@ const STATE_BYTES_MAX: u64 = 4 << 30;
 /// Minimum time between two saved states. SIGTERM does not wait for the end of an update, and
 /// everything after the last saved state is lost.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
-/// Reciprocal of the maximum share of time for saving.
+/// Reciprocal of the maximum fraction of time spent saving.
 const SAVE_SHARE: u32 = 20;
 
 #[derive(clap::Args)]

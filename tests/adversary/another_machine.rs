@@ -56,7 +56,7 @@ fn connections_whose_other_end_has_vanished_keep_nobody_out() {
     let _vanished = Process::start(command);
     wait_until("it is connected", || descriptors() >= before + COUNT);
     hosts.cable("down");
-    // Each vanished connection is closed while agents join.
+    // Vanished connections are closed one by one while agents join.
     std::thread::sleep(Duration::from_secs(6));
     let start = Instant::now();
     let _agents = hosts.agent(0, &FOUR);

@@ -1,5 +1,5 @@
 //! An E-stop through the gateway's control port reaches the boat's wire in time, whatever happens
-//! to the game; also tests orders from ahead of the game's time.
+//! to the game; also tests orders that are ahead of the game's time.
 //!
 //! `SQUALL_TRIES=1000` measures the delay and prints its distribution.
 
@@ -160,7 +160,8 @@ fn an_e_stop_is_on_the_wire_in_time_whatever_happens_to_the_game() {
     drop(flood);
     rig.sim.process.signal("STOP");
     rig.measure("with a suspended sim");
-    // Through this machine's registry, as operators do, because the game itself does not respond.
+    // Stop boats through this machine's registry, as operators do, because the game itself does not
+    // respond.
     rig.delegate();
     for (vehicle, words) in [
         ("blue_one", "an E-stop of this boat"),

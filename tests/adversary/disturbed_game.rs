@@ -5,7 +5,7 @@ use bus::Bus;
 use messages::Control;
 use serde_json::Value;
 
-/// In lockstep, so that any disturbance changes the digest.
+/// A lockstep game, so that any disturbance changes the digest.
 const SCENARIO: &str = "pav01_600s";
 /// Simulated seconds per second during the attack.
 pub(crate) const SPEED: &str = "2";

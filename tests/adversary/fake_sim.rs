@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::sync::{Arc, Mutex};
 use zenoh::{Session, Wait};
 
-/// A zenoh router that answers for a game and records the requests.
+/// A zenoh router that poses as a game and records the requests.
 struct FakeSim {
     _session: Session,
     asked: Arc<Mutex<Vec<String>>>,
@@ -79,7 +79,7 @@ impl FakeSim {
     }
 }
 
-/// Neither as a client nor as a router, which receives declarations that clients must request.
+/// Tries as a client and as a router, which receives declarations that clients must request.
 #[test]
 fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
     let mut game = DisturbedGame::start();
@@ -95,7 +95,7 @@ fn nobody_passes_for_the_sim_or_receives_orders_and_navigation() {
         .iter()
         .flat_map(|intruder| topics.map(|topic| intruder.answer(topic)))
         .collect();
-    // In addition to the sim's own endpoint.
+    // Declare tokens in addition to that of the sim.
     let tokens = intruders.each_ref().map(|intruder| {
         intruder
             .session

@@ -15,7 +15,7 @@ use zenoh::Wait;
 use zenoh::qos::CongestionControl;
 use zenoh::query::Query;
 
-/// Longer than the validity of a proof.
+/// A delay longer than the validity of a proof.
 const LATER: Duration = Duration::from_secs(2);
 
 fn operate(

@@ -64,7 +64,7 @@ fn orders(ticket: u64, seq: u64, at: SimTime) -> Orders {
 #[test]
 fn of_many_that_race_for_a_boat_one_has_it_and_the_next_when_that_is_gone() {
     let sim = Sim::start("patient", &["--join-s", "600"]);
-    // Every third node has no token, and every third a wrong one.
+    // A third of the nodes have no token, and another third a wrong one.
     let token_of = |i: usize| {
         [Some(token()), None, Some(Token::random())]
             .into_iter()

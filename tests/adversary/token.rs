@@ -98,7 +98,7 @@ fn what_was_seen_once_cannot_be_used_again() {
     )
     .expect("it may");
     // The same challenge with an invented proof, a missing challenge and an invalid challenge;
-    // below, bare controls as in the earlier protocol.
+    // below, requests without a proof, as in the earlier protocol.
     for forged in [
         json!({ "body": "pause", "proof": { "challenge": challenge["challenge"], "mac": "00".repeat(32) } }),
         json!({ "body": "pause", "proof": { "challenge": "", "mac": "" } }),

@@ -1,5 +1,5 @@
-//! The same tests for a game with keys, in a separate test program, because zenoh uses more threads
-//! in a process with keys.
+//! The adversary tests for a game with keys, in a separate test program, because zenoh uses more
+//! threads in a process with keys.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stderr,

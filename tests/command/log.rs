@@ -1,5 +1,5 @@
-//! `squall log` from the command line: records a short game, then examines it in every way;
-//! mistakes are explained.
+//! `squall log` from the command line: records a short game, then examines it in every way; user
+//! errors are explained.
 
 use crate::program;
 use serde_json::Value;

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 mod full_disk;
+mod import;
 mod log;
 mod memory;
 mod names;

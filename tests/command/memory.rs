@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::Duration;
 
-/// Allowed growth for the longer recording, for more events and noise.
+/// Allowed growth for the longer recording, because of more events and noise.
 const MORE: f64 = 1.2;
 
 /// Records a game of 40 boats at rest for this duration; returns the path.

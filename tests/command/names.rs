@@ -86,7 +86,7 @@ fn a_model_plays_like_the_strategy_that_uses_it() {
             "{model}"
         );
     }
-    // The strategy beside a model wins, as a training writes it.
+    // The strategy file that training writes next to a model takes precedence.
     let strategy = "base = \"scenarios/strategies/strategy_4.toml\"\n";
     std::fs::write(dir.path().join("trained_1.toml"), strategy).unwrap();
     assert_eq!(digest("trained_1.onnx"), digest("strategy_4"));

@@ -113,7 +113,7 @@ fn errors_show_the_line_with_a_caret_and_colours_where_they_are_wanted() {
                 a.toml:3:7: ../gale.toml is not in quotes, expected \"../gale.toml\"\n  |\n3 | sea = ../gale.toml\n  |       ^^^^^^^^^^^^\n";
     assert_eq!(plain, want);
     assert_eq!(said(&["--color", "never"], None), plain);
-    // The values of an axis are settings with the same mistake, which is on no line of a file.
+    // The values of an axis are settings that share one mistake, whose line is in no file.
     let sweep = format!(
         "base = {:?}\n[[axis]]\nkey = \"sea.wind.sped_m_s\"\nvalues = [1, 2]\n",
         scenario("sweeps/wind.toml")

@@ -42,7 +42,7 @@ fn short_tournament(dir: &TempDir, more: &str) -> String {
     path
 }
 
-/// The same, with these settings and with entries by name and strategy.
+/// Like [`short_tournament`], with these settings and with entries by name and strategy.
 fn tournament_of(dir: &TempDir, settings: &str, entries: &[(&str, &str)]) -> String {
     let path = short_tournament(dir, "");
     let entry = |(name, file): &(&str, &str)| {
@@ -371,7 +371,7 @@ fn games_that_cannot_start_are_explained() {
     let dir = tempfile::tempdir().unwrap();
     short_tournament(&dir, "");
     let crowd = place(&dir, "crowd.toml");
-    // Two boats are where a third must keep clear of them.
+    // Two boats occupy the area in which a third must keep clear of them.
     let game = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
                 [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
                 [[fleet]]\nteam = \"red\"\ncount = 1\n\
@@ -407,7 +407,8 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| (name, name));
     let said = play(&[four, pav01], &["--league", &league]);
     assert!(said.contains("0 of 4 games already played"), "{said}");
-    // The last line was truncated when the machine stopped. The league continues to the same bytes.
+    // The last line was truncated when the machine stopped. The resumed league writes the same
+    // bytes.
     let text = std::fs::read_to_string(&results).unwrap();
     let uninterrupted = std::fs::read(format!("{league}/report.json")).unwrap();
     std::fs::write(&results, &text[..text.len() - 9]).unwrap();
@@ -429,7 +430,7 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
     let mut known = json(&format!("{league}/report.json"));
     let mut anew = json(&whole);
     anew["rate"] = Value::Null;
-    // Only the history knows that idle joined later: it is rated after its first game.
+    // Only the history shows that idle joined later: it is rated after its first game.
     let joined = |report: &mut Value| {
         let idle = report["entries"]
             .as_array()

@@ -280,7 +280,7 @@ fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
         );
     }
 
-    // The tables list the same episodes, and this one names a recording for every seventh.
+    // Both tables list the same episodes, and the second one names a recording for every seventh.
     let [plain, episodes] =
         [&plain, &seen].map(|folder| String::from_utf8(read(folder, "episodes.csv")).unwrap());
     let (of_plain, no_files) = split(&plain);

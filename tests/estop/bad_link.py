@@ -7,7 +7,8 @@ but many kernels lack it. Linux, root, Python 3.9, no packages.
     ip netns add left; ip netns add right
     bad_link.py --host left=left:10.77.0.1 --host right=right:10.77.0.2 --delay-ms 50 --loss-pct 5
 
-prints `ready`, then takes one command a line from standard input and answers each with a line. It ends with its input.
+prints `ready`, then takes one command a line from standard input and answers each with a line. It exits when standard
+input closes.
 
     cut A B          drops everything between two hosts, packets in flight included
     restore          ends all cuts
@@ -38,9 +39,9 @@ from priority import run_at_once
 MTU_BYTES = 1500
 # From <linux/if_tun.h>.
 TUNSETIFF, IFF_TUN, IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
-# Packets read from one device before the others get their turn.
+# Maximum number of packets read from one device before the others get their turn.
 BATCH = 64
-# The newest packets, kept for `trace`.
+# Maximum number of packets kept for `trace`.
 TRACE_MAX = 50_000
 
 
@@ -80,7 +81,7 @@ class Scheduler:
 
     def send(self, now_s, source, target, packet):
         """Accepts a packet. Returns its fate: sent, lost, cut or full."""
-        # Drawn for every packet, so that cuts do not shift the losses that follow.
+        # Draw a loss for every packet, so that cuts do not shift the losses that follow.
         lost = self.random.random() < self.quality.loss
         if self.is_cut(source, target):
             return "cut"

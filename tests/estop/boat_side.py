@@ -5,7 +5,8 @@
 
 Gateways connect to LISTEN_PORT of loopback. Each command of a gateway to its boat is printed when its bytes arrive,
 before the boat receives them: `wire NS BOAT MODE SENTENCE`, NS of the monotonic clock. Standard input takes requests,
-JSON one a line, with the keys `boat` and `body`, and answers `reply JSON`. The game's token is in SQUALL_TOKEN.
+one JSON object a line with the keys `boat` and `body`; each is answered with `reply JSON`. The game's token is in
+SQUALL_TOKEN.
 """
 
 import hashlib

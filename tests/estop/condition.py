@@ -50,7 +50,7 @@ class Loss(Condition):
 
 class Cut(Condition):
     def before(self, number):
-        # Boat and fleet are stopped in turn: each of them meets both cuts.
+        # Boat and fleet are stopped in turn, each during both cuts.
         self.cut_s = time.monotonic()
         self.machines.tell_link("cut", CONSOLE, (SIM, BOAT)[number // 2 % 2])
         is_long = number % LONG_CUT_EVERY == LONG_CUT_EVERY - 1
@@ -73,7 +73,7 @@ class StoppedSim(Condition):
 
 
 class Stranger(Condition):
-    """A stranger on the simulation's machine: nearer than anyone else."""
+    """A stranger on the simulation's machine, with a shorter path to it than all other nodes."""
 
     what, about, stranger = "forge", BOATS, None
 

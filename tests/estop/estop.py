@@ -74,7 +74,7 @@ def arguments():
                         help="a subfolder is created for each run: the programs' output, and packets of late stops "
                              "[runs/estop]")
     args = parser.parse_args()
-    # Beyond that, the detour through the simulation that remains after a cut would always be late.
+    # With longer delays, the detour through the simulation that remains after a cut would always be late.
     for name, least, most in (("times", 1, 100_000), ("tell_times", 0, 1000), ("delay_ms", 0.0, 190.0)):
         if not least <= getattr(args, name) <= most:
             parser.error(f"--{name.replace('_', '-')} is {getattr(args, name)}, expected {least} to {most}")
@@ -130,7 +130,7 @@ def stop_once(rig, console, condition, number, tally):
         shown = [console.find(stopped_line(boat), until - time.monotonic(), mark) for boat in boats]
         stop = Stop(wire, [milliseconds_between(began_ns, line and line[0]) for line in shown])
         if min(wire) < condition.delay_ms:
-            # Nothing is faster than the network: it is a late copy of the previous stop.
+            # Nothing is faster than the network: this is a late copy of the previous stop.
             return None
         stalls_ms = rig.stalls_ms(began_ns, time.monotonic_ns())
         tally.stall_ms = max([tally.stall_ms, *stalls_ms])

@@ -44,7 +44,7 @@ class Tally:
 
     limit_ms: float
     stops: list = field(default_factory=list)
-    # The longest time during a stop for which the machine let ordinary programs wait.
+    # The longest time during a stop for which the machine ran no ordinary programs.
     stall_ms: float = 0.0
     # Fraction of all stops that may be shown before they have happened.
     false_share: float = 0.0
@@ -81,7 +81,7 @@ def milliseconds(value):
 def table(heading, rows):
     """Rows below a heading: the first column to the left, all others to the right.
 
-    A table wider than a terminal is our error.
+    A table wider than a terminal is a bug.
     """
     rows = [[*row, *[""] * (len(heading) - len(row))] for row in [heading, *rows]]
     columns = max(map(len, rows))

@@ -104,7 +104,7 @@ class Program:
 
 
 def end_with_parent():
-    """In a child process: it is killed when the test dies, however that happens."""
+    """Called in a child process, which is then killed when the test dies for any reason."""
     LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
@@ -177,7 +177,7 @@ class Machines:
         return json.loads(self.link.request("stats")[0])
 
     def trace(self, from_ns):
-        """The packets since then, as text."""
+        """The packets since a time, as text."""
         return self.link.request(f"trace {from_ns}", ends=lambda line: line == "end")[:-1]
 
 

@@ -19,7 +19,7 @@ STANDBY = "L"
 START_S, ARM_S = 60.0, 15.0
 # How long the release of the fleet may take, s.
 RELEASE_S = 1.0
-# A boat that has not been sent standby by then counts as never stopped, s.
+# Time after which a boat that has not been sent standby counts as never stopped, s.
 NEVER_S = 5.0
 
 
@@ -134,7 +134,7 @@ class Rig:
                 if mode == STANDBY:
                     self.standbys[boat].append(int(at_ns))
                 else:
-                    # A stop is looked for among the standbys since the boat was last under way.
+                    # Stops are searched for among the standbys since the boat was last under way.
                     self.standbys[boat].clear()
 
     def is_standing(self, boat):
@@ -155,7 +155,7 @@ class Rig:
             time.sleep(0.005)
 
     def stalls_ms(self, from_ns, to_ns):
-        """How long this machine let ordinary programs wait in the meantime, ms, for each time that it did."""
+        """The durations of this machine's stalls between two times, ms."""
         with self.stall_watch.news:
             stalls = [stall_in(line) for _, line in self.stall_watch.lines]
         return [late_ms for at_ns, late_ms in stalls if at_ns >= from_ns and at_ns - 1e6 * late_ms <= to_ns]

@@ -13,7 +13,7 @@ use std::time::Duration;
 /// Margin for retransmission and transport: without deliberate loss, then with it.
 const SENT_AGAIN: Duration = Duration::from_millis(1000);
 const SENT_OFTEN: Duration = Duration::from_millis(2000);
-/// Extra delay before an effect with patience as its time limit becomes visible.
+/// Extra delay until an effect that is due within patience becomes visible.
 const SHOWS: Duration = Duration::from_millis(1500);
 /// After the last fault, all nodes are back within the network's lease, patience and this margin.
 const BACK: Duration = Duration::from_secs(8);
@@ -71,7 +71,7 @@ impl Plan {
     }
 }
 
-/// The results of undisturbed games in one process, by game, seed and length. Orders answered in
+/// The results of undisturbed games in one process, by game, seed and length. Orders that arrive in
 /// time never expire.
 static UNDISTURBED: Mutex<BTreeMap<(usize, u64, u32), String>> = Mutex::new(BTreeMap::new());
 
@@ -213,7 +213,7 @@ fn check_ends(plan: &Plan, played: &Played) -> Vec<String> {
         if is_early && !plan.forges() {
             wrong.push(format!("agent {agent} exits during the game: {reason}"));
         } else if plan.faults.is_empty() && !plan.forges() {
-            // Even so, some messages are lost.
+            // Even without faults, some messages are lost.
             wrong.push(format!(
                 "agent {agent} misses the end of the game: {reason}"
             ));

@@ -154,7 +154,7 @@ impl BoatLink for MemoryLink {
 
 impl Drop for MemoryLink {
     fn drop(&mut self) {
-        // Dropping the fields joins the reader.
+        // Dropping the fields joins the reader thread.
         self.wire.visit(|state, _| state.links += 1);
     }
 }

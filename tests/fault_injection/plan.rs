@@ -164,7 +164,7 @@ impl Plan {
         self.gateway() + 2
     }
 
-    /// Whether no message is lost or damaged as long as no link is cut.
+    /// Whether no message is lost or corrupted as long as no link is cut.
     pub(crate) fn is_calm(&self) -> bool {
         self.conditions.loss == 0.0 && self.conditions.damaged.0 == 0.0
     }
@@ -193,7 +193,7 @@ impl Plan {
         GAMES[self.game] == "talking"
     }
 
-    /// Whether damage may turn a message into a different valid one.
+    /// Whether corruption may turn a message into a different valid one.
     pub(crate) fn forges(&self) -> bool {
         self.conditions.damaged.0 > 0.0 && self.conditions.damaged.1 != Damage::Truncated
     }

@@ -135,7 +135,7 @@ pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     }
 }
 
-/// Runs this when its node exits for any reason.
+/// Calls a function when its node exits for any reason.
 pub(crate) struct AtExit<F: FnMut()>(pub(crate) F);
 
 impl<F: FnMut()> Drop for AtExit<F> {

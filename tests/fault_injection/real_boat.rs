@@ -30,7 +30,7 @@ pub(crate) struct Wire {
     state: Watched<State>,
     /// The newest order that reached the gateway: when it was made, and when it arrived.
     order: Mutex<(SimTime, SimTime)>,
-    /// Whether damage on the way may change the time of an order.
+    /// Whether corruption in transit may change the time of an order.
     is_forged: bool,
 }
 

@@ -47,7 +47,7 @@ enum Fault {
 struct Boat {
     emulator: Emulator,
     bridge: Bridge,
-    /// The present order, and when it ends.
+    /// The current order, and when it ends.
     order: Order,
     until: SimTime,
     toward: Option<(Ned, f64)>,
@@ -271,7 +271,7 @@ fn effective(order: Order, fault: Fault) -> Order {
     }
 }
 
-/// Legitimate failsafes: those reported by the receiver itself.
+/// Whether a failsafe is legitimate: reported by the receiver itself.
 fn is_of_receiver(cause: &str) -> bool {
     [
         "the fix has quality",

@@ -1,4 +1,4 @@
-//! Real boats: the test's own gateway adds one, moves it according to its orders, and falls silent.
+//! Real boats: a gateway in the test adds one, moves it as ordered, and falls silent.
 
 use crate::support::{Sim, join, own, result_of, wait_until};
 use bus::{Bus, Declaration, Priority, Publisher};

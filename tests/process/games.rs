@@ -40,7 +40,7 @@ fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
 
 #[test]
 fn a_game_that_was_reset_is_the_game_of_that_seed() {
-    // Its boats and sea are drawn by the seed, too.
+    // Its boats and sea are drawn with the seed, too.
     let game = own("rough");
     let here = result_of(&[&game, "--seed", "2", "--in-process"]);
     let (sim, _agents) = Sim::start_with_agents("rough", &["--seed", "1", "--speed", "20"]);

@@ -307,7 +307,7 @@ fn the_end_of_a_game_disarms_the_boat_without_a_failsafe() {
     wait_until("it is disarmed", || {
         tell(&game, "status").contains("blue_one: disarmed")
     });
-    // Longer than the validity of an order.
+    // Wait for longer than an order is valid.
     std::thread::sleep(Duration::from_secs(2));
     let status = tell(&game, "status");
     assert!(!status.contains("failsafe"), "{status}");

@@ -13,7 +13,8 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
     let mut blue = hosts.agent(0, &FOUR[..2]);
     let mut red = hosts.agent(1, &FOUR[2..]);
     sim.wait_for_kind("started");
-    // Briefly, then until both ends have closed the link, which zenoh does after ten seconds.
+    // Cut it briefly, then until both ends have closed the link, which zenoh does after ten
+    // seconds.
     for cut_s in [2, 15] {
         sim.play_on(5.0);
         hosts.cable("down");

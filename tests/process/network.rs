@@ -17,10 +17,10 @@ use std::time::{Duration, Instant};
 
 /// zenoh closes a silent link after ten seconds, and closing may take ten more.
 const AFTERMATH: Duration = Duration::from_secs(25);
-/// Time without progress reports after which a game counts as stopped. It reports ten times a
+/// Time without progress reports after which a game counts as stopped. Reports come ten times a
 /// second; the rest allows for a busy machine.
 const STANDSTILL: Duration = Duration::from_millis(1500);
-/// Both paces: as fast as possible, and by the clock, which waits for no node.
+/// Both paces: as fast as possible, and by the clock, without waiting for nodes.
 const PACES: [&str; 2] = ["lockstep", "200x"];
 
 /// A game with an agent for each boat, in a sim with as few threads as under `squall run`.
@@ -186,7 +186,7 @@ fn a_sim_that_was_suspended_in_real_time_blames_nobody() {
     sim.stop();
 }
 
-/// Longer than zenoh's ten seconds, after which both ends close a link.
+/// Suspends the sim for longer than zenoh's ten seconds, after which both ends close a link.
 fn suspend(sim: &Sim) {
     sim.process.signal("STOP");
     std::thread::sleep(Duration::from_secs(15));

@@ -44,7 +44,7 @@ impl User {
         Sim::start_with(self.squall(&[]), scenario, &[&place, more].concat())
     }
 
-    /// A session in the game, with its present token.
+    /// A session in the game, with its current token.
     fn bus(&self, sim: &Sim) -> Bus {
         let file =
             self.0
@@ -94,7 +94,7 @@ fn a_game_that_does_not_begin_is_waited_for_longer_than_a_silent_sim() {
     sim.wait_for(|message| {
         message["kind"] == "waiting" && message["agents"].as_array().is_some_and(|a| a.len() == 3)
     });
-    // Longer than the silence limit and than the time allowed without a token.
+    // Wait for longer than the silence limit and the time allowed without a token.
     std::thread::sleep(Duration::from_secs(7));
     assert!(
         first.0.try_wait().expect("it can be waited for").is_none(),
@@ -133,7 +133,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_requires_its_token() {
     let next = user.sim("real_attacker", "twice", &endpoint, &pace);
     assert!(said.any(|line| line.contains("joined: the sim accepts the boat")));
     std::thread::spawn(move || said.for_each(drop));
-    // Actions that need the token of the present game.
+    // Actions that need the token of the current game.
     let release = |bus: &Bus| {
         bus.request_node::<_, OperatorReply>(
             &topic::operate(&next.name(), "blue_one"),
@@ -148,7 +148,7 @@ fn a_gateway_that_outlives_its_sim_joins_the_next_and_requires_its_token() {
         .expect("the token is known")
         .expect("an answer");
     assert_eq!(reply.status.vehicle, "blue_one");
-    // At its control port, and by a command that is given neither token nor address.
+    // A command that is given neither token nor address reaches the gateway's control port.
     for command in ["estop", "release"] {
         printed_by(user.squall(&["gateway", "tell", "blue_one", command]));
     }

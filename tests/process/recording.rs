@@ -233,7 +233,7 @@ fn a_recording_that_the_disk_has_no_room_for_is_told_in_the_end() {
 fn unusable_outputs_are_refused_before_the_game() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let taken = taken.local_addr().expect("it is bound").to_string();
-    // Too long to wait for its end.
+    // This game is too long to wait for its end.
     let game = &*own("long");
     for (args, part) in [
         (

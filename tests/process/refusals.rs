@@ -114,7 +114,7 @@ fn every_agent_mistake_is_refused_counted_and_harmless() {
         ..good.clone()
     });
     send(&good);
-    // Another agent's vehicle without its own; a vehicle that does not exist.
+    // Orders for another agent's vehicle and not its own, and for a vehicle that does not exist.
     send(&rogue.orders(vec![VehicleOrder::new(
         VehicleId(0),
         Order::Thrust {
@@ -137,7 +137,7 @@ fn every_agent_mistake_is_refused_counted_and_harmless() {
         ..VehicleOrder::new(VehicleId(3), Order::Hold)
     };
     send(&rogue.orders(vec![unknown]));
-    // Valid for a while, then silent: the others continue after the sim's patience.
+    // Send valid orders for a while, then nothing: the others continue after the sim's patience.
     for _ in 0..20 {
         send(&rogue.good());
     }

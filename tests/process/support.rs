@@ -443,14 +443,14 @@ impl Sim {
         serde_json::from_slice(&info.expect("an answer")).expect("a game")
     }
 
-    /// A session at its hub, its name and its scenario.
+    /// A session at the sim's hub, with the game's name and scenario.
     pub(crate) fn session(&self) -> (Bus, GameName, Scenario) {
         let bus = self.bus();
         let scenario = self.info(&bus).scenario;
         (bus, self.name(), scenario)
     }
 
-    /// A session at its hub.
+    /// A session at the sim's hub.
     pub(crate) fn bus(&self) -> Bus {
         let net = Net {
             connect: vec![self.endpoint.clone()],

@@ -1,4 +1,4 @@
-//! The program crashes on no content of a scenario file.
+//! No content of a scenario file crashes the program.
 
 use crate::kinds::KINDS;
 use crate::{files, written};

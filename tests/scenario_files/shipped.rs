@@ -353,7 +353,7 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
     }
 }
 
-/// The values in lists; integers like all others.
+/// The values in lists, as strings; all numbers in the same format.
 fn flat(value: &Value) -> Vec<String> {
     match value {
         Value::Array(values) => values.iter().flat_map(flat).collect(),
@@ -470,7 +470,7 @@ fn the_examples_of_every_key_are_sound_and_show_the_defaults() {
 #[test]
 fn the_examples_of_the_handbook_are_sound() {
     let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
-    // They are written next to the shipped files that they name.
+    // The examples are written next to the shipped files that they name.
     let folder = tempfile::tempdir().unwrap();
     for path in KINDS.iter().flat_map(|kind| files(*kind)) {
         let text = std::fs::read_to_string(&path).unwrap();

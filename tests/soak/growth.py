@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from statistics import median
 
-# The slope is the median of the slopes between pairs of samples: the maximum number of paired samples.
+# Maximum number of paired samples: the slope is the median of the slopes between pairs.
 PAIRED_MAX = 200
 # The first part of a run fills buffers and caches: growth there does not continue.
 WARM_UP = 0.2

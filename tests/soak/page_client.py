@@ -42,7 +42,7 @@ class PageClient:
         return thread
 
     def close(self):
-        """Says good-bye."""
+        """Closes the WebSocket and the connection."""
         try:
             self._send(CLOSE, struct.pack("!H", 1000))
         except OSError:

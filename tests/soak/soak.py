@@ -84,7 +84,7 @@ class Soak:
         self.processes = {}
         self.samples = {}
         self.problems = []
-        # Boat, when, why: a gateway's status reports only the newest.
+        # Boat, time and cause of each: a gateway's status reports only the newest.
         self.failsafes = set()
         self.begun = time.monotonic()
         # All figures, one per line, as they arrive: they are kept even if this is killed.
@@ -134,7 +134,7 @@ class Soak:
         try:
             entries = [json.loads(file.read_text(encoding="utf-8")) for file in files]
         except ValueError:
-            # It is being written.
+            # The file is still being written.
             return None
         return entries if len(entries) >= count else None
 
@@ -145,7 +145,7 @@ class Soak:
             return None
 
     def wait_for(self, what, find):
-        """The value found eventually; an error if not in time."""
+        """Waits for a value; an error if there is none in time."""
         until = time.monotonic() + START_S
         while time.monotonic() < until:
             if self.run.poll() is not None:
@@ -190,7 +190,7 @@ class Soak:
             self.problems.append(text)
 
     def measured(self, name, at, act):
-        """Its result; records how long it took."""
+        """The result of `act`; records how long it took."""
         start = time.monotonic()
         try:
             result = act()
@@ -281,7 +281,7 @@ def label(words):
 
 
 def ask_gateway(place, boat, command):
-    """A request at the control port of a gateway: a line of JSON each way."""
+    """Sends a request to the control port of a gateway: a line of JSON each way."""
     host, _, port = place.rpartition(":")
     with socket.create_connection((host, int(port)), timeout=ANSWER_S) as connection:
         lines = connection.makefile("rwb")

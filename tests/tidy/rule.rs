@@ -10,7 +10,7 @@ use crate::tree::Tree;
 pub(crate) const LINES_MAX: usize = 650;
 
 /// The allowed dependencies of each of our crates, in any section, including planned folders.
-const MAY_IMPORT: [(&str, &[&str]); 25] = [
+const MAY_IMPORT: [(&str, &[&str]); 26] = [
     ("onnx", &[]),
     ("primitives", &[]),
     // `scenario` for tests only: scenes are judged by the shipped rules files.
@@ -101,6 +101,18 @@ const MAY_IMPORT: [(&str, &[&str]); 25] = [
     (
         "trial",
         &["primitives", "rules", "scenario", "messages", "sim"],
+    ),
+    // `gateway` for the protocols and the map of the field, `trial` for its tables.
+    (
+        "import",
+        &[
+            "primitives",
+            "scenario",
+            "messages",
+            "recording",
+            "gateway",
+            "trial",
+        ],
     ),
     // `analysis` for the curves below the timeline of a replay.
     (

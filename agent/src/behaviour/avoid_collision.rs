@@ -8,8 +8,8 @@ use crate::ivp::Side;
 use crate::situation::{MovingPoint, Situation};
 use scenario::strategy::{AvoidCollision, Grade};
 
-/// Passing distance to starboard below which boats pass port to port instead, m, so that both
-/// choose the same side where either would do.
+/// Boats that would pass starboard to starboard at less than this distance, m, pass port to port
+/// instead, so that both choose the same side where either would do.
 const PORT_TO_PORT_M: f64 = 2.0;
 /// Relative speed below which no passing side is assigned, m/s.
 const PASSING_MIN_M_S: f64 = 0.3;

@@ -15,9 +15,9 @@ const ROUNDING_M: f32 = 0.01;
 
 /// Lowers the utilities of a table according to each candidate's clearance from the edges.
 ///
-/// A candidate's value is the fraction of `save_m` that it keeps: half for the closest distance to
-/// an edge on the way, half for the distance at the end of the look-ahead. The worst edge counts.
-/// The fraction `x` yields `x + bend x (1 - x)` of each half.
+/// A candidate's value is the fraction of `save_m` by which it stays inside: half of the value for
+/// the closest distance to an edge on the way, half for the distance at the end of the look-ahead.
+/// The worst edge counts. The fraction `x` yields `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -33,7 +33,7 @@ pub(super) struct Clearance<'a> {
     pub(super) handling: Handling,
     pub(super) lookahead_s: f64,
     pub(super) save_m: f64,
-    /// Extra value of the first metres from the edge: 0 weighs all metres of `save_m` equally, 1
+    /// Extra value of the first metres from the edge: 0 weights all metres of `save_m` equally, 1
     /// gives the first ones double weight and the last ones none.
     pub(super) bend: f64,
 }
@@ -137,7 +137,7 @@ struct Edge {
     sin_from: f64,
     /// Distance inside the edge at the start of the turn, m.
     start_m: f32,
-    /// Outward drift over the whole way, m.
+    /// Outward drift over the whole path, m.
     drift_m: f32,
 }
 
@@ -232,23 +232,23 @@ fn reached(old_m_s: f64, after_s: f64, handling: &Handling) -> (f32, f32) {
 /// A turn relative to an edge: outward distances per m/s of speed.
 #[derive(Clone, Copy)]
 struct Outward {
-    /// The farthest outward distance during the turn, s (times the speed).
+    /// The farthest outward distance during the turn, divided by the speed, s.
     farthest_s: f64,
     /// The time of the farthest point, s.
     farthest_after_s: f64,
-    /// The outward distance at the end of the turn, s (times the speed).
+    /// The outward distance at the end of the turn, divided by the speed, s.
     end_s: f64,
 }
 
 impl Outward {
-    /// From one angle to the edge's outward normal (with its sine) to another (with its sine).
+    /// A turn from one angle to the edge's outward normal to another, each given with its sine.
     ///
     /// The outward distance is the integral of the cosine: the sine divided by the turn rate, with
     /// extremes at right angles to the normal.
     #[inline(always)]
     fn new(turn: &Turn, (from_rad, sin_from): (f64, f64), sin_to: f64) -> Outward {
-        // Mirrored, so that one formula serves turns to both sides and a mirrored scene gives the
-        // same bits.
+        // Mirror the turn, so that one formula serves turns to both sides and a mirrored scene
+        // gives the same bits.
         let side = if turn.by_rad < 0.0 { -1.0 } else { 1.0 };
         let end_s = side * (sin_to - sin_from) / turn.turn_rad_s;
         let to_parallel_rad = (side * FRAC_PI_2 - from_rad) * side;
@@ -286,13 +286,13 @@ impl Outward {
 struct Way {
     /// Distance inside the edge at the start of the turn, m.
     start_m: f32,
-    /// Outward drift over the whole way, m.
+    /// Outward drift over the whole path, m.
     drift_m: f32,
-    /// Outward distance to the farthest point of the turn, and back from there, s (times the
-    /// speed).
+    /// Outward distance to the farthest point of the turn, and back from there, divided by the
+    /// speed, s.
     out_s: f32,
     back_s: f32,
-    /// Outward distance on the straight run, s (times the speed).
+    /// Outward distance on the straight run, divided by the speed, s.
     straight_s: f32,
     /// Minimum and maximum mean speed on each part of the path, m/s.
     within: [(f32, f32); 3],
@@ -303,7 +303,7 @@ impl Way {
     #[inline(always)]
     fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;
-        // The arc is run at the mean of old and new speed and the rest at the new speed, both
+        // The arc is driven at the mean of old and new speed and the rest at the new speed, both
         // within the acceleration limits.
         let farthest_m = self.start_m - self.out_s * held(0.5 * (old_m_s + new_m_s), out);
         let end_m = farthest_m - self.drift_m + self.back_s * held(new_m_s, back)
@@ -375,8 +375,8 @@ impl Ways {
         }
     }
 
-    /// A bit mask of the paths that may come within `save_m` of the edge at some speed; the larger
-    /// of `most_m_s` and the old speed is the maximum.
+    /// A bit mask of the paths that may come within `save_m` of the edge at some speed up to
+    /// `most_m_s`.
     #[inline(always)]
     fn low(&self, most_m_s: f32, save_m: f32) -> u32 {
         let begins_m = self.start_m - larger(self.drift_m, 0.0) - ROUNDING_M;

@@ -48,14 +48,15 @@ impl HaltingAvoidance {
         let Some(halt_m) = value(halt_m) else {
             return Halt::Clear;
         };
-        // Three times the halt distance by default: if a halt ended at the distance at which it
+        // The default is three times the halt distance: if a halt ended at the distance at which it
         // begins, it would start again at once.
         let release_m = value(release_m).unwrap_or(3.0 * halt_m);
         let release_s = value(release_s);
         let distances = situation
             .others()
             .map(|other| situation.at.distance(other.at));
-        // All boats, even those that `contacts` excludes: the halt concerns hulls, not tags.
+        // Consider all boats, even those that `contacts` excludes: the halt concerns hulls, not
+        // tags.
         let nearest_m = distances.fold(f64::INFINITY, f64::min);
         let is_clear = nearest_m >= release_m.max(halt_m);
         match self.halt {

@@ -40,8 +40,8 @@ impl BehaviourLogic for ConstantSpeed {
 
 impl BehaviourLogic for FullStop {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        // A preference, not a command: a stationary boat cannot avoid an approaching one. Any
-        // course will do.
+        // This is a preference, not a command: a stationary boat cannot avoid an approaching one.
+        // Any course will do.
         output.add(&Objective::speed(Peak::tent(
             0.0,
             situation.model.speed_max_m_s,

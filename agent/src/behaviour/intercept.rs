@@ -61,7 +61,7 @@ mod tests {
                 east: v_east,
             },
         };
-        // At right angles: a 3-4-5 triangle.
+        // The contact crosses at right angles: a 3-4-5 triangle.
         let got = meeting_point(Ned::default(), 2.0, contact(40.0, 0.0, 0.0, 1.2));
         assert!(
             got.distance(Ned {

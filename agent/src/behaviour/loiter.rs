@@ -54,7 +54,7 @@ impl LoiterBehaviour {
                 best
             }
         });
-        // The corner after the nearest one, which may be behind the boat.
+        // Steer for the corner after the nearest one, because the nearest may be behind the boat.
         self.target = Some(self.after(nearest));
         self.arrival = self.arrival.next();
     }

@@ -17,7 +17,7 @@ impl BehaviourLogic for MaxSpeed {
         {
             let peak_width = self.speed_m_s.value(situation);
             let base_width = self.tolerance_m_s.value(situation);
-            // Half of a peak around rest: full utility up to the limit, as in MOOS-IvP's
+            // Half of a peak at zero speed: full utility up to the limit, as in MOOS-IvP's
             // `ZAIC_LEQ`.
             output.add(&Objective::speed(Peak {
                 peak_width,

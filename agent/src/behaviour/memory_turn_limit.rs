@@ -52,7 +52,7 @@ impl BehaviourLogic for MemoryTurnLimitBehaviour {
         {
             self.headings.pop_front();
         }
-        // Evenly spaced if the memory is too long to store every decision.
+        // Space the stored headings evenly if the memory is too long to store every decision.
         let spacing = SimTime::from_s(memory.as_s() / (MOST - 1) as f64);
         if self
             .headings

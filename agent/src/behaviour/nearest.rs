@@ -32,8 +32,8 @@ impl Nearest {
 
     pub(super) fn add(&mut self, entry: (f64, usize)) {
         let place = self.entries[..self.count].partition_point(|known| *known <= entry);
-        // At most sixteen, so that the cost of a decision is bounded for any fleet; the nearest, so
-        // that the order of the list does not matter.
+        // Keep at most sixteen, so that the cost of a decision is bounded for any fleet, and the
+        // nearest ones, so that the order of the list does not matter.
         if place < NEAREST_MAX {
             self.count = (self.count + 1).min(NEAREST_MAX);
             self.entries[place..self.count].rotate_right(1);

@@ -91,7 +91,7 @@ impl BehaviourLogic for OpRegionBehaviour {
                 output.stop();
                 return;
             }
-            // Over the ground, so that the boat returns whatever the drift.
+            // Steer over the ground, so that the boat returns whatever the drift.
             let (heading_rad, speed_m_s) = situation.motion.steer(
                 situation.at.bearing_rad(region.nearest_inside(situation)),
                 self.task.recovery_speed_m_s.value(situation),
@@ -163,8 +163,8 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
-            // If drift is not estimated, the boat's present sway: drift across the edge must always
-            // count.
+            // If drift is not estimated, use the boat's present sway: drift across the edge must
+            // always count.
             drift: situation.motion.drift_now(&situation.own.nav),
             handling: situation.motion.handling(),
             margin_m,
@@ -196,8 +196,8 @@ impl Region {
     fn nearest_inside(&self, situation: &Situation) -> Ned {
         let field = &situation.model.field;
         let (x, y) = field.along_across(situation.at);
-        // At most half of the field: in a field narrower than twice the margin, the target is the
-        // centre, and `clamp` panics if its limits cross.
+        // Use at most half of the field's extent: in a field narrower than twice the margin, the
+        // target is then the centre. `clamp` would panic if its limits crossed.
         let within = |v: f64, extent_m: f64| {
             let in_m = (self.margin_m + WELL_IN_M).min(0.5 * extent_m);
             v.clamp(in_m, extent_m - in_m)

@@ -1,7 +1,8 @@
 //! Outline: the boat's closest distance to a polygon, for each course and speed.
 //!
-//! After a decision the boat keeps its motion while it turns, then drives straight. A run at a
-//! higher speed contains those at lower speeds, so its pass distance is at most theirs.
+//! After a decision the boat keeps its motion while it turns, then moves straight over the ground.
+//! Without drift, a run at a higher speed contains those at lower speeds, so its pass distance is
+//! at most theirs.
 
 use super::steering::CPA_MIN_UTILITY;
 use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
@@ -19,7 +20,7 @@ pub(super) struct Outline {
     sides: Vec<Side>,
     /// Half planes that contain the polygon.
     half_planes: Vec<HalfPlane>,
-    /// The half planes in which the boat is not.
+    /// The half planes that do not contain the boat.
     facing: Vec<HalfPlane>,
     /// Where the current run passes each corner.
     feet: Vec<Foot>,
@@ -67,7 +68,7 @@ impl Places {
         }
     }
 
-    /// The places after this time at a velocity.
+    /// The places reached after this time at a velocity.
     #[inline(always)]
     fn after(&self, along: &Places, after_s: &Lanes<f64>) -> Places {
         let mut places = *self;
@@ -116,8 +117,8 @@ impl Outline {
         let mut half_planes: Vec<HalfPlane> = Vec::new();
         for side in &sides {
             let unit = side.along.scaled(side.per_m2.sqrt());
-            // A half plane that contains all corners is a valid bound, on whichever side of the
-            // line through a side it lies, even for a concave polygon.
+            // A half plane that contains all corners is a valid bound, whichever way it faces from
+            // the line through the side, and even for a concave polygon.
             for out in [1.0, -1.0] {
                 let normal = Ned {
                     north: out * unit.east,
@@ -268,8 +269,8 @@ impl Kernel for Passes<'_> {
 
     #[inline(always)]
     fn run(mut self) {
-        // Inside there is no distance to keep: all courses are equally bad, and other behaviours
-        // decide how to get out.
+        // Inside the polygon there is no distance to keep: all courses are equally bad, and other
+        // behaviours decide how to get out.
         if is_within(&self.outline.corners, self.at) {
             for k in 0..self.grid.courses() {
                 self.table.lowered_mut(k).fill(Lanes::splat(0.0));
@@ -320,23 +321,25 @@ impl Passes<'_> {
                 let turning = self.outline.runs(Places::splat(self.at), velocity);
                 let from_m2 = self.outline.squared_m2(&turning.from);
                 before_m2 = self.outline.passed_m2(&turning, &duration_s, &from_m2);
-                let drifting = self.outline.runs(start, Places::splat(self.drift));
-                before_m2 = self.outline.passed_m2(&drifting, &horizon_s, &before_m2);
             }
         }
         let before = self.worth(&before_m2);
-        let least = self.run_straight(begin, along, &before_m2);
+        let least = self.run_straight((start, begin), along, &before_m2);
         for i in 0..LANES.min(self.grid.courses() - first) {
             let last = self
                 .outline
                 .utilities
                 .last()
                 .map_or(before.0[i], |last| last.0[i]);
-            if last < 100.0 {
+            let utilities = self.outline.utilities.iter();
+            if utilities.fold(before.0[i], |least, by_course| {
+                smaller(least, by_course.0[i])
+            }) < 100.0
+            {
                 let row = self.table.lowered_mut(first + i);
                 row.fill(Lanes::splat(last));
-                // By ascending speed: first the speeds that come no nearer than the turn, then the
-                // computed ones, then the last value for all higher speeds.
+                // Fill the row by ascending speed: first the speeds that come no nearer than the
+                // turn, then the computed ones, then the last value for all higher speeds.
                 let known = std::iter::repeat_n(before.0[i], least);
                 let known = known.chain(
                     self.outline
@@ -390,21 +393,40 @@ impl Passes<'_> {
     }
 
     /// Computes the utilities of straight runs by speed, from the first speed that matters to the
-    /// last. Returns the first.
+    /// last. Returns the first. The runs lead from `start` to `begin`, displaced along the course.
     #[inline(always)]
-    fn run_straight(&mut self, begin: Places, along: Places, before_m2: &Lanes<f64>) -> usize {
+    fn run_straight(
+        &mut self,
+        (start, begin): (Places, Places),
+        along: Places,
+        before_m2: &Lanes<f64>,
+    ) -> usize {
+        let drifts = self.drift != Ned::default();
         let speeds_m_s = self.grid.speeds_m_s();
         let max_m2 = self.max_m * self.max_m;
         let clear_m = self.clear_m(
-            &begin,
+            (&start, &begin),
             &along,
             smaller(before_m2.reduced(larger), max_m2).sqrt() + ROUNDING_M,
         );
         let first = speeds_m_s
             .partition_point(|speed_m_s| speed_m_s * self.horizon_s <= clear_m)
-            .max(1);
+            .max(usize::from(!drifts));
         self.outline.utilities.clear();
         if first >= speeds_m_s.len() {
+            return first;
+        }
+        if drifts {
+            // Each speed has a direction of its own. Drifting for the whole horizon before driving
+            // off brought every course near the obstacle, and boats stayed in front of it.
+            for speed_m_s in &speeds_m_s[first..] {
+                let over_ground =
+                    Places::splat(self.drift).after(&along, &Lanes::splat(*speed_m_s));
+                let runs = self.outline.runs(start, over_ground);
+                let horizon_s = Lanes::splat(self.horizon_s);
+                let least_m2 = self.outline.passed_m2(&runs, &horizon_s, before_m2);
+                self.outline.utilities.push(self.worth(&least_m2));
+            }
             return first;
         }
         let runs = self.outline.runs(begin, along);
@@ -427,13 +449,15 @@ impl Passes<'_> {
         first
     }
 
-    /// The distance that all straight runs can cover before one may come within `near_m`, m.
+    /// The distance that all straight runs can cover through the water before one may come within
+    /// `near_m`, m.
     #[inline(always)]
-    fn clear_m(&self, begin: &Places, along: &Places, near_m: f64) -> f64 {
+    fn clear_m(&self, (start, begin): (&Places, &Places), along: &Places, near_m: f64) -> f64 {
         let mut most_m = f64::NEG_INFINITY;
         for half_plane in &self.outline.half_planes {
             let mut clear_m = Lanes::splat(0.0);
             for i in 0..LANES {
+                let start_m = half_plane.out_m(start.north.0[i], start.east.0[i]);
                 let out_m = half_plane.out_m(begin.north.0[i], begin.east.0[i]) - near_m;
                 let nearing = -(half_plane.normal.north * along.north.0[i]
                     + half_plane.normal.east * along.east.0[i]);
@@ -442,7 +466,7 @@ impl Passes<'_> {
                 } else {
                     f64::INFINITY
                 };
-                clear_m.0[i] = if out_m > 0.0 {
+                clear_m.0[i] = if smaller(start_m - near_m, out_m) > 0.0 {
                     until_m
                 } else {
                     f64::NEG_INFINITY
@@ -543,20 +567,18 @@ mod tests {
             table
         }
 
-        /// The utilities of a course by speed, leg by leg.
+        /// The utilities of a course by speed, each for the turn and a straight line to the end.
         fn worth(&self, grid: &Grid, k: usize) -> Vec<f64> {
             let course = Ned {
                 north: grid.direction(k).0.into(),
                 east: grid.direction(k).1.into(),
             };
             let start = self.at + self.velocity.scaled(self.lag.duration_s(course));
-            let mut pass_m = distance_to_line(&self.corners, (self.at, start));
-            let mut from = start;
+            let turning_m = distance_to_line(&self.corners, (self.at, start));
             let leg = |speed_m_s: &f64| {
                 let to =
                     start + self.drift.scaled(HORIZON_S) + course.scaled(speed_m_s * HORIZON_S);
-                pass_m = pass_m.min(distance_to_line(&self.corners, (from, to)));
-                from = to;
+                let pass_m = turning_m.min(distance_to_line(&self.corners, (start, to)));
                 match pass_m {
                     _ if pass_m <= MIN_M => CPA_MIN_UTILITY * pass_m / MIN_M,
                     _ if pass_m >= MAX_M => 100.0,

@@ -1,4 +1,5 @@
-//! Policy: a model or an external program proposes course and speed, weighed with everything else.
+//! Policy: a model or an external program proposes course and speed, which the helm weighs like any
+//! other preference.
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};

@@ -63,8 +63,8 @@ impl BehaviourLogic for StationKeepBehaviour {
             .min(situation.model.speed_max_m_s);
         // At the station itself, every heading is as good as the current one.
         let (heading_rad, speed_m_s) = if speed_m_s > 0.0 {
-            // Through the water, against the drift: the boat may need full speed ahead to hold its
-            // station.
+            // Steer through the water, against the drift: the boat may need full speed ahead to
+            // hold its station.
             situation
                 .motion
                 .steer(situation.at.bearing_rad(point.at), speed_m_s)

@@ -79,7 +79,7 @@ pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
 }
 
 /// Keeps clear of the edge of a disc by at least `min_m`, ideally by `max_m`, for the duration of a
-/// leg. On a side other than `leave_to`, if given, the same distance is worth less.
+/// leg. If `leave_to` is given, the same distance on the other side is worth less.
 pub(super) fn keep_clear(
     situation: &Situation,
     disc: MovingPoint,
@@ -96,9 +96,10 @@ pub(super) fn keep_clear(
         horizon_s,
         min_m: min_m + radius_m,
         max_m: max_m.max(min_m) + radius_m,
-        // Zero utility where hulls touch, and half at the minimum distance. In MOOS-IvP, a boat
-        // that is already too close is indifferent to coming closer, so even the slightest
-        // preference to pursue tips the balance. With the slope, hulls touched a sixth as often in 150 games.
+        // The utility is zero where hulls touch, and half of the maximum at the minimum distance.
+        // In MOOS-IvP, a boat that is already too close is indifferent to coming closer, so even
+        // the slightest preference to pursue tips the balance. With the slope, hulls touched a
+        // sixth as often in 150 games.
         touch_m: radius_m,
         approach: Approach::Avoid {
             at_min: CPA_MIN_UTILITY,

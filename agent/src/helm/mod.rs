@@ -26,12 +26,15 @@ use scenario::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule,
 use std::sync::Arc;
 use steadiness::Steadiness;
 
+/// Speed up to which an order is one to stand still, m/s.
+const STANDING_M_S: f64 = 0.5;
+
 /// A behaviour of the program.
 #[derive(Clone)]
 struct BehaviourInstance {
     run: BehaviourRun,
     logic: Box<dyn BehaviourLogic>,
-    /// Its weight at the last decision; 0 if it did not run.
+    /// The behaviour's weight at the last decision; 0 if the behaviour did not run.
     weight: f64,
 }
 
@@ -101,7 +104,7 @@ impl HelmMind {
         let mut helm = HelmMind::new(scenario, vehicle, program);
         let is_killed =
             |fault: &Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
-        // Only if a fault requires it: in a fleet, a copy of the scenario for each boat would be
+        // Keep the scenario only if a fault requires it: in a fleet, a copy for each boat would be
         // too expensive.
         if scenario.faults.iter().any(is_killed) {
             let scenario = scenario.clone();
@@ -265,16 +268,25 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        // A fraction of the weights, at most a tenth (checked when the file is loaded): it can
-        // delay a change of mind, but not outweigh safety. Edges do not count: they do not move, so
-        // noise causes no changes of mind near them, and counting them would keep a boat there that
-        // is needed elsewhere.
+        // The bonus is a fraction of the weights, at most a tenth (checked when the file is
+        // loaded): it can delay a change of mind, but not outweigh safety. Edges do not count: they
+        // do not move, so noise causes no changes of mind near them, and counting them would keep a
+        // boat there that is needed elsewhere. Nor does an order to stand still near an obstacle
+        // count: a way around it is worth little more, and boats waited in front of obstacles.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,
                 Task::OpRegion(_)
             )
         };
+        let is_obstacle = |function: &WeightedFunction| {
+            let task = &self.program.behaviours[function.behaviour].task;
+            matches!(task, Task::AvoidObstacle(_))
+        };
+        let last = last.filter(|last| {
+            problem.grid().speed_m_s(last.speed) > STANDING_M_S
+                || !self.functions.list.iter().any(is_obstacle)
+        });
         let weights: f64 = self
             .functions
             .list

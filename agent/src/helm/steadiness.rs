@@ -6,11 +6,11 @@
 
 use crate::ivp::{Choice, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Problem};
 
-/// Maximum difference of a near course from the last one, rad.
+/// Courses within this angle of the last one count as near, rad.
 const NEAR_RAD: f64 = std::f64::consts::FRAC_PI_6;
-/// Maximum difference of a near speed from the last one, m/s.
+/// Speeds within this difference of the last one count as near, m/s.
 const NEAR_M_S: f64 = 0.75;
-/// Width over which the bonus falls from near to zero, rad or m/s: a step, apart from rounding.
+/// Width over which the bonus falls to zero, rad or m/s: a step, apart from rounding.
 const STEP: f64 = 1e-6;
 
 /// The bonus for candidates near the last decision.
@@ -23,12 +23,13 @@ impl Steadiness {
     /// Adds the bonus to a problem, half of the weight for course and half for speed; `None` at
     /// weight 0.
     pub(super) fn new(problem: &mut Problem, last: Decision, weight: f64) -> Option<Steadiness> {
-        // A full problem has no space for it; a checked program never has that many functions.
+        // A full problem has no space for the bonus; a checked program never has that many
+        // functions.
         if weight <= 0.0 || problem.len() >= FUNCTIONS_MAX {
             return None;
         }
-        // Near the last decision, not exactly there: a bonus for the exact decision made boats lag
-        // behind moving targets.
+        // The bonus applies near the last decision, not only at it: a bonus for the exact decision
+        // made boats lag behind moving targets.
         let near = |summit, peak_width| Peak {
             summit,
             peak_width,

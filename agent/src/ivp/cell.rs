@@ -28,7 +28,7 @@ pub(super) struct Cell {
     pub(super) mean: f32,
     /// The factor by which the outer corners exceed the fastest speed; 1 for a whole disc.
     stretch: f32,
-    /// Whether it counts as a whole disc.
+    /// Whether the cell counts as a whole disc.
     pub(super) is_disc: bool,
 }
 

@@ -55,9 +55,9 @@ const OTHER_SIDE: f32 = 0.2;
 /// Whether to avoid or to approach the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
-    /// Farther is better: linear from 0 where the hulls touch to `at_min` at `min_m`, and from there to
-    /// 100 at `max_m`. MOOS-IvP has a step of 25 at the minimum distance and zero below it, so a
-    /// boat that is too close is indifferent to coming closer.
+    /// Farther is better: linear from 0 where the hulls touch to `at_min` at `min_m`, and from
+    /// there to 100 at `max_m`. MOOS-IvP has a step of 25 at the minimum distance and zero below
+    /// it, so a boat that is too close is indifferent to coming closer.
     Avoid {
         /// Utility at `min_m`, 0 to 100.
         at_min: f64,
@@ -224,7 +224,8 @@ pub(super) struct Ways {
     share: f32,
     w: Vector,
     t: f32,
-    /// Maximum distance of other paths outside the polygon of these (m), and its growth rate (m/s).
+    /// Maximum distance of other paths outside the polygon of the outer four (m), and its growth
+    /// rate (m/s).
     off: f32,
     bend: f32,
 }
@@ -276,7 +277,8 @@ impl Ready {
         } else {
             1.0
         };
-        // One square root for all three legs: the smallest square belongs to the smallest distance.
+        // One square root serves all three legs: the smallest square belongs to the smallest
+        // distance.
         smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 

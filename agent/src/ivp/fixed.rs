@@ -20,8 +20,8 @@ const _: () = assert!(scenario::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
 /// The value of a place outside the grid: below all others, but the sum of two does not overflow.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
 
-/// From this number to twice its value, the numbers of an `f32` are the integers, so adding to it
-/// rounds to an integer.
+/// From this number to twice its value, the values of an `f32` are exactly the integers, so adding
+/// to it rounds to an integer.
 const INTEGERS: f32 = (1_u32 << 23) as f32;
 
 // A product is smaller, so the sum of both rounds to nearest, half to even.
@@ -41,8 +41,8 @@ impl Weight {
         } else {
             0.0
         };
-        // Single precision, as in the bounds: with two different roundings a bound could fall below
-        // its points.
+        // Use single precision, as in the bounds: with two different roundings a bound could fall
+        // below its points.
         Weight((weight / QUANTUM) as f32)
     }
 
@@ -59,7 +59,8 @@ impl Weight {
     /// A weighted utility (0 to 100) in quanta, rounded to nearest, half to even.
     #[inline(always)]
     pub(super) fn quanta(self, utility: f32) -> i32 {
-        // No float-to-integer conversion, which is slow because it handles out-of-range values.
+        // Avoid a float-to-integer conversion, which is slow because it handles out-of-range
+        // values.
         (utility * self.0 + INTEGERS).to_bits() as i32 - INTEGERS.to_bits() as i32
     }
 }

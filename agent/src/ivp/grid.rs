@@ -36,8 +36,8 @@ impl Grid {
     /// A grid of `courses` by `speeds`, up to `speed_max_m_s`.
     ///
     /// # Panics
-    /// With less than one course or two speeds, more than 65,536 of either, or a top speed that is
-    /// not both positive and finite.
+    /// If there is no course or fewer than two speeds, if there are more than 65,536 of either, or
+    /// if the top speed is not positive and finite.
     pub fn new(courses: usize, speeds: usize, speed_max_m_s: f64) -> Grid {
         assert!(
             (1..=1 << 16).contains(&courses),
@@ -181,8 +181,8 @@ fn course_rad(k: usize, n: usize) -> f64 {
 
 /// The unit vector of course `k` of `n`, mirrored from a course in the first octant.
 fn direction(k: usize, n: usize) -> (f32, f32) {
-    // Mirrored rather than computed for each course: library cosines of mirrored angles may differ
-    // in the last bit, and a mirrored game would then take a different course.
+    // Directions are mirrored rather than computed for each course: library cosines of mirrored
+    // angles may differ in the last bit, and a mirrored game would then take a different course.
     if 2 * k > n {
         let (north, east) = direction(n - k, n);
         return (north, -east);

@@ -13,7 +13,8 @@ const _: () = assert!(SIDE * SIDE == LANES);
 
 /// A group of numbers. Plain loops over all lanes become single instructions.
 #[derive(Clone, Copy, Debug)]
-// A cache line and the widest register: loads that straddle two lines cost twice as much.
+// Aligned to a cache line, the size of the widest register: loads that straddle two lines cost
+// twice as much.
 #[repr(align(64))]
 pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
 
@@ -34,8 +35,8 @@ impl<T: Copy> Lanes<T> {
     pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {
         let mut halves = self.0;
         let mut width = LANES / 2;
-        // In halves, always with the same pairs, so that sums and comparisons have the same order
-        // on every machine.
+        // Reduce in halves, always with the same pairs, so that sums and comparisons have the same
+        // order on every machine.
         while width > 0 {
             for i in 0..width {
                 halves[i] = of_two(halves[i], halves[i + width]);

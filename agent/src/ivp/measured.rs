@@ -55,7 +55,7 @@ impl<'a> Distances<'a> {
         }
     }
 
-    /// For courses, as north and east components of unit vectors, at speeds.
+    /// Computes the distances for courses (unit vectors, north and east) at speeds.
     #[inline(always)]
     pub(super) fn measure(
         &mut self,

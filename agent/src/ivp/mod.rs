@@ -20,7 +20,7 @@
 //! - functions of course only, of speed only, or sums of both, are added up in two lists;
 //! - the others are evaluated for tiles of four courses by four speeds. Tiles whose bound is below
 //!   the best value so far are skipped, often many at once;
-//! - weight times utility is rounded to [`QUANTUM`] before it is added. Sums are therefore of
+//! - weight times utility is rounded to [`QUANTUM`] before it is added. Sums are therefore
 //!   integers: the order of functions does not matter, and ties are exact.
 //!
 //! Open [`Objective`] first, then [`Problem`].

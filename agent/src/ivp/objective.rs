@@ -49,7 +49,7 @@ impl Objective<'_> {
         }
     }
 
-    /// Whether it distinguishes courses.
+    /// Whether the function distinguishes courses.
     pub fn decides_course(&self) -> bool {
         match self {
             Objective::Coupled { course_share, .. } => *course_share > 0.0,
@@ -57,7 +57,7 @@ impl Objective<'_> {
         }
     }
 
-    /// Whether it distinguishes speeds.
+    /// Whether the function distinguishes speeds.
     pub fn decides_speed(&self) -> bool {
         match self {
             Objective::Coupled { course_share, .. } => *course_share < 1.0,
@@ -82,8 +82,8 @@ impl Objective<'_> {
             }) => {
                 let course = course.of_course(grid, k);
                 let speed = speed.of_speed(grid, j);
-                // For display only: the search adds the two parts as integers, each with its own
-                // weight, as in `contribution`.
+                // This sum is for display only: the search adds the two parts as integers, each
+                // with its own weight, as in `contribution`.
                 (f64::from(course) * share + f64::from(speed) * (1.0 - share)) as f32
             }
             Parts::Field(field) => {
@@ -95,7 +95,7 @@ impl Objective<'_> {
         }
     }
 
-    /// Its contribution to the sum at course `k` and speed `j`, in steps of
+    /// The function's contribution to the sum at course `k` and speed `j`, in steps of
     /// [`QUANTUM`](super::QUANTUM): the rounded weighted utility. For `Coupled` the two parts are
     /// rounded separately.
     pub fn contribution(&self, grid: &Grid, weight: f64, k: usize, j: usize) -> i32 {
@@ -110,7 +110,7 @@ impl Objective<'_> {
         }
     }
 
-    /// How the solver evaluates it.
+    /// How the solver evaluates the function.
     pub(super) fn parts(&self, grid: &Grid) -> Parts<'_> {
         let field = |field: Option<Field>| field.map_or(Parts::Nothing, Parts::Field);
         let fastest_m_s = grid.speed_max_m_s();
@@ -136,7 +136,7 @@ impl Objective<'_> {
             Objective::Table(table) => {
                 let found = (table.courses, table.speeds);
                 let size = (grid.courses(), grid.speeds());
-                // A bug of the caller, not a fault in a file: a table of a different grid would be
+                // A bug in the caller, not a fault in a file: a table of a different grid would be
                 // read beyond its end.
                 assert!(
                     found == size,
@@ -151,9 +151,9 @@ impl Objective<'_> {
 /// How a function is evaluated.
 pub(super) enum Parts<'a> {
     Separable(Separable<'a>),
-    /// A formula in both.
+    /// A formula in course and speed.
     Field(Field),
-    /// A table over both.
+    /// A table over course and speed.
     Table(&'a Table),
     /// A function with a non-finite number.
     Nothing,

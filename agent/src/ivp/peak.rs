@@ -115,7 +115,7 @@ pub(super) struct CoursePeak {
 }
 
 impl CoursePeak {
-    /// Whether any of the [`LANES`] courses from `first` on may have any utility.
+    /// Whether any of the [`LANES`] courses from `first` on may have a utility above 0.
     pub(super) fn may_reach(&self, grid: &Grid, first: usize) -> bool {
         let middle = (first + LANES / 2).min(grid.courses() - 1);
         let from_middle = grid.ticks_between(self.summit, middle).abs() * self.tick_rad;
@@ -135,7 +135,7 @@ impl CoursePeak {
         self.peak.peak_width > 0.0
     }
 
-    /// The same, given whether the peak has a width.
+    /// Like [`CoursePeak::at`], given whether the peak has a width.
     #[inline(always)]
     pub(super) fn at_with(&self, grid: &Grid, k: usize, has_width: bool) -> f32 {
         let distance = grid.ticks_between(self.summit, k) * self.tick_rad;

@@ -32,7 +32,7 @@ pub struct Preference {
 pub struct Choice {
     /// The chosen point.
     pub decision: Decision,
-    /// Its weighted sum: the largest on the grid.
+    /// The point's weighted sum: the largest on the grid.
     pub value: f64,
     /// Number of points evaluated, some counted twice; no other point could win.
     pub evaluated: usize,
@@ -120,7 +120,8 @@ impl Problem {
     /// Adds a function with its priority weight, 0 to [`WEIGHT_MAX`](super::WEIGHT_MAX).
     ///
     /// # Panics
-    /// Beyond [`FUNCTIONS_MAX`] functions, or with a table whose size differs from the grid's.
+    /// With more than [`FUNCTIONS_MAX`] functions, or with a table whose size differs from the
+    /// grid's.
     pub fn add(&mut self, weight: f64, objective: &Objective) {
         assert!(
             self.functions < FUNCTIONS_MAX,
@@ -128,8 +129,8 @@ impl Problem {
         );
         let weight = Weight::new(weight);
         self.functions += 1;
-        // Count them anyway: whether a helm has a preference must not depend on weights that happen
-        // to be zero.
+        // Count the function anyway: whether a helm has a preference must not depend on weights
+        // that happen to be zero.
         if weight.is_zero() {
             return;
         }

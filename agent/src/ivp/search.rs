@@ -26,7 +26,7 @@ pub(super) struct Best {
 /// Own ship's current motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Present {
-    /// Its course, ticks.
+    /// The current course, ticks.
     pub(super) course: f64,
     pub(super) speed_m_s: f64,
 }
@@ -76,7 +76,7 @@ impl Kernel for Search<'_> {
     fn run(mut self) -> (Best, usize) {
         let formulas = self.sums.fields.len();
         self.bounds.parts.resize(formulas, Lanes::splat(0));
-        // Above `DONE`, so that nothing finished is taken, and below every sum.
+        // Start above `DONE`, so that no finished cell is taken, and below every sum.
         let mut best = Best {
             value: DONE + 1,
             decision: Decision {
@@ -97,7 +97,7 @@ impl Kernel for Search<'_> {
         }
         self.bound_lists();
         self.bound_sectors(best.value);
-        // Most promising first.
+        // Search the most promising sectors first.
         while let Some(sector) = take_most(&mut self.bounds.sectors, best.value) {
             let across = sector / self.cells.sector_speeds;
             let along = sector % self.cells.sector_speeds;
@@ -114,7 +114,7 @@ impl Kernel for Search<'_> {
     }
 }
 
-/// Takes the place of the largest number, if that is at least `least`, and marks it as finished.
+/// Returns the place of the largest number, if that is at least `least`, and marks it as finished.
 #[inline(always)]
 fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
     let mut side_by_side = list[0];
@@ -124,8 +124,8 @@ fn take_most(list: &mut [Lanes<i32>], least: i32) -> Option<usize> {
         }
     }
     let most = side_by_side.most();
-    // Cells whose bound equals the best sum are taken too: one may contain an equally good point
-    // nearer to the boat's current motion.
+    // Cells whose bound equals the best sum are searched, too: one may contain an equally good
+    // point nearer to the boat's current motion.
     if most < least {
         return None;
     }
@@ -188,7 +188,8 @@ impl Search<'_> {
     fn tiles(&mut self, sector: usize, least: i32) -> Lanes<i32> {
         let courses = &self.cells.tile_courses[sector / self.cells.sector_speeds];
         let speeds = &self.cells.tile_speeds[sector % self.cells.sector_speeds];
-        // Take them out, so that the sector's bounds can be read while these are written.
+        // Take the parts out of the bounds, so that the sector's bounds can be read while the parts
+        // are written.
         let mut parts = std::mem::take(&mut self.bounds.parts);
         let clear = Search::clear(self.bounds, parts.len(), sector);
         let lists = self.bounds.lists[sector];
@@ -199,8 +200,8 @@ impl Search<'_> {
         tiles
     }
 
-    /// Evaluates a tile, by its place in the current sector, if any. Keeps its best point if that
-    /// beats the best so far.
+    /// Evaluates a tile, given its place in the current sector, if any. Keeps its best point if
+    /// that beats the best so far.
     #[inline(always)]
     fn evaluate(
         &self,
@@ -333,8 +334,8 @@ impl Sums {
         sums
     }
 
-    /// The same for sectors. Also sets a bit in `clear` for each sector in which a formula has full
-    /// utility.
+    /// Like [`Sums::add_bounds`], for sectors. Also sets a bit in `clear` for each sector in which
+    /// a formula has full utility.
     #[inline(always)]
     fn bound_sectors(
         &self,
@@ -435,8 +436,8 @@ impl Sums {
     }
 }
 
-/// Formulas with full utility throughout a sector: those that avoid a contact to which no path in
-/// it comes near.
+/// Formulas with full utility throughout a sector: those that avoid a contact that no path in the
+/// sector comes near.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
     /// By formula, a bit for each sector of the group.

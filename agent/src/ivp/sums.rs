@@ -99,8 +99,8 @@ impl Sums {
                 if let Field::Closest(other) = other
                     && ready.has_distances_of(other)
                 {
-                    // Next to functions with the same distances: sums are of integers, so the order
-                    // does not matter.
+                    // Insert it next to functions with the same distances: sums are integers, so
+                    // the order does not matter.
                     (place, ready.group) = (i + 1, other.group);
                 }
             }
@@ -225,7 +225,8 @@ impl Kernel for AddTable<'_> {
                     0
                 };
             }
-            // Cleared on first use in a decision, not before each: most of the table stays unused.
+            // Clear the table on first use in a decision, not before each decision: most of the
+            // table stays unused.
             if *lowered != 0 && !sums.lowered[across] {
                 sums.lowered[across] = true;
                 for rows in sums.table.chunks_mut(LANES * sums.courses.len()) {

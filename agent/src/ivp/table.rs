@@ -45,7 +45,7 @@ impl Table {
         self.lowered.resize(self.courses.div_ceil(LANES), 0);
     }
 
-    /// The utilities of a course by speed, in groups, for lowering.
+    /// The utilities of a course by speed, in groups, to be lowered.
     #[inline(always)]
     pub(crate) fn lowered_mut(&mut self, k: usize) -> &mut [Lanes<f32>] {
         let lanes = self.lanes();

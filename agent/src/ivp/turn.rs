@@ -92,9 +92,9 @@ pub(super) struct Turning {
 /// A turn onto a course.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
-    /// Its duration, s.
+    /// Duration, s.
     pub(super) duration: f32,
-    /// Its end point, through the water, m.
+    /// End point, through the water, m.
     pub(super) by: Vector,
 }
 
@@ -103,9 +103,11 @@ pub(super) struct Turn {
 pub(super) struct Fan {
     pub(super) first: Turn,
     pub(super) last: Turn,
-    /// Maximum distance of any of the end points from the straight line between these two, m.
+    /// Maximum distance of any of the end points from the straight line between those of `first`
+    /// and `last`, m.
     pub(super) off: f32,
-    /// Maximum deviation of a duration from the corresponding mean of these two, s.
+    /// Maximum deviation of a duration from the corresponding mean of those of `first` and `last`,
+    /// s.
     pub(super) off_s: f32,
 }
 
@@ -186,7 +188,7 @@ pub(super) struct MeanSpeed {
     ahead: f32,
     /// The maximum gain until then (m/s), and its reciprocal.
     gain: (f32, f32),
-    /// The same for the maximum loss.
+    /// The maximum loss until then (m/s), and its reciprocal.
     loss: (f32, f32),
 }
 

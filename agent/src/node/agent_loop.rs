@@ -19,8 +19,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// First pictures of each team that may arrive after later ones: resent copies that the network
-/// delayed. A game that was reset repeats them until its agents have joined again.
+/// Number of times, per team, that a game's first picture may arrive after later ones: resent
+/// copies that the network delayed. A game that was reset repeats its first picture until its
+/// agents have joined again.
 const FIRST_PICTURES_LATE: usize = 2;
 /// Interval at which an agent without incoming pictures checks whether the sim is alive.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
@@ -35,7 +36,7 @@ const EVENTS_MAX: usize = 1024;
 /// The minds and their connections during a game.
 pub(super) struct AgentLoop {
     runner: MindRunner,
-    /// Number of first pictures of a game in a row, after decisions on later ones.
+    /// Number of consecutive arrivals of a game's first picture after decisions on later ones.
     first_pictures: usize,
     talk: Talk,
     policies: PolicyInbox,
@@ -76,7 +77,7 @@ impl AgentLoop {
             None => minds_for(scenario, known, None),
         });
         // The sim waits `patience_s` before it drops an agent. Waiting for teammates takes at most
-        // half of this, so that a late one cannot cost this agent the game.
+        // half of this, so that a late teammate cannot cost this agent the game.
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
         let delivery = Delivery::per_decision(is_lockstep);
@@ -137,7 +138,7 @@ impl AgentLoop {
             .eq(joined.vehicles)
         {
             return Err(NodeError::Refused(
-                "it granted boats that were not requested".to_owned(),
+                "the boats that it granted differ from those requested".to_owned(),
             ));
         }
         self.ticket = joined.ticket;
@@ -155,7 +156,7 @@ impl AgentLoop {
         self.refusals + self.talk.refusals() + self.policies.refusals()
     }
 
-    /// Decides until the game is over. Returns whether it begins again, for other minds.
+    /// Decides until the game is over. Returns whether the game was reset and needs new minds.
     pub(super) fn play(&mut self, stop: &AtomicBool) -> Result<bool, NodeError> {
         while !stop.load(Ordering::Relaxed) {
             let mut decided = false;
@@ -177,8 +178,8 @@ impl AgentLoop {
                 decided |= self.decide()?;
             }
             if let Some(queries) = &mut self.helm_queries {
-                // After the orders have been sent: inspection slows down a lockstep game but
-                // changes none of its decisions.
+                // Answer queries after the orders have been sent: inspection slows down a lockstep
+                // game but changes none of its decisions.
                 queries.answer(&mut self.runner, decided);
             }
             match self.sim.state() {
@@ -199,7 +200,7 @@ impl AgentLoop {
                     theirs: e.to_string(),
                 });
             }
-            // Damaged in transit; the sim will send it again.
+            // Corrupted in transit; the sim will send it again.
             Err(_) => return Ok(()),
         };
         if picture.stamp.seq == 0 && self.runner.decided() > Some(0) {
@@ -242,8 +243,8 @@ impl AgentLoop {
             });
             self.talk.publish_words(self.runner.sent(), stamp);
         }
-        // Messages to teammates before orders: the sim advances once it has the orders, and by then
-        // the messages are in transit.
+        // Send messages to teammates before orders: the sim advances once it has the orders, and by
+        // then the messages are in transit.
         self.talk.send()?;
         if let Some(orders) = self.runner.answer(self.ticket) {
             self.orders.send(&orders)?;

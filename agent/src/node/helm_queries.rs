@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 const INBOX: usize = 32;
 /// How long a mind keeps utilities after the last query that requested them.
 const LOOKED_AT: Duration = Duration::from_secs(5);
-/// How long a query before the first kept decision waits for one. A paused game makes no decisions,
-/// and the page waits at most a second.
+/// How long a query waits for the first decision with kept utilities. A paused game makes no
+/// decisions, and the page waits at most a second.
 const NEXT_DECISION: Duration = Duration::from_millis(500);
 /// Maximum number of answers between picture polls: a flood of queries must not keep a boat from
 /// deciding.
@@ -31,7 +31,7 @@ struct Asked {
 /// The queries about the helms of this process.
 pub(super) struct HelmQueries {
     inbox: Inbox<(VehicleId, Query)>,
-    /// Queries received before a decision was kept.
+    /// Queries received before the first decision with kept utilities.
     waiting: Vec<Asked>,
     /// The inspected boats, each with the time of its last query.
     looked: Vec<(VehicleId, Instant)>,

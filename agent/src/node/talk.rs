@@ -71,9 +71,9 @@ impl Talk {
             let inbox = Arc::clone(&team_inbox);
             let take =
                 move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.receive(team, bytes));
-            // From agent to agent, past the sim's loop, because the sim neither needs nor checks
-            // these messages. As part of orders they would slow down lockstep for everyone, and on
-            // the water no sim can relay them.
+            // These messages go from agent to agent and bypass the sim's loop, because the sim
+            // neither needs nor checks them. As part of orders they would slow down lockstep for
+            // everyone, and on the water no sim can relay them.
             declarations.push(bus.subscribe_remote(topic::say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team), Priority::Normal)?;
             outgoing.push(Outgoing {
@@ -120,8 +120,8 @@ impl Talk {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
-            // Keep them, because a repeated picture is answered with the same messages, so that
-            // lost messages are sent again.
+            // Keep the messages, because a repeated picture is answered with the same messages, so
+            // that lost messages are sent again.
             to.last = (!words.is_empty()).then_some(Say {
                 stamp: Stamp {
                     version: Say::VERSION,

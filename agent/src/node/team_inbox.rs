@@ -20,9 +20,9 @@ struct Sent {
 #[derive(Clone, Debug)]
 struct Sender {
     team: TeamId,
-    /// Whether a different process runs it.
+    /// Whether a different process runs the boat.
     is_mate: bool,
-    /// Whether its strategy sends messages at all.
+    /// Whether the boat's strategy sends messages at all.
     talks: bool,
     newest: Option<Sent>,
     before: Option<Sent>,
@@ -112,8 +112,8 @@ impl TeamInbox {
                 None => sender.before.take_if(|sent| sent.seq < seq),
             };
             let on_time = sent.as_ref().is_some_and(|sent| sent.seq + 1 == seq);
-            // Count it and keep the previous values: a boat continues with the last ones it
-            // received.
+            // Count the message as missing and keep the previous values: a boat continues with the
+            // last values that it received.
             missed += u64::from(awaited && !on_time);
             if !self.has_begun && sender.talks {
                 sender.awaited_at = Some(seq.saturating_add(1));
@@ -132,7 +132,8 @@ impl Sender {
     /// Stores a word sent after decision `seq`, if there is space.
     fn note(&mut self, seq: u64, word: Word) -> bool {
         let Some(newest) = self.newest.as_mut().filter(|newest| newest.seq == seq) else {
-            // In order of arrival, not by stamp: a wrong stamp displaces at most one message.
+            // Keep messages in order of arrival, not by stamp: a wrong stamp displaces at most one
+            // message.
             self.before = self.newest.replace(Sent {
                 seq,
                 words: vec![word],
@@ -232,7 +233,7 @@ mod tests {
         receive(&mut inbox, &say(4, &[(1, 1.0)]));
         assert!(inbox.is_complete(5));
         delivered(&mut inbox, 5);
-        // A later message proves that it can no longer arrive.
+        // A later message proves that the awaited one can no longer arrive.
         receive(&mut inbox, &say(6, &[(1, 1.0)]));
         assert!(inbox.is_complete(6));
     }

@@ -1,8 +1,8 @@
 //! Observations: a boat's knowledge at a decision, encoded as a policy's input.
 //!
-//! The same code encodes them in training and on the boat. They come only from the pictures that
-//! the boat's agent receives: its own sensors, its team's radio and the referee's messages, never
-//! from the simulator's true state.
+//! The same code encodes observations in training and on the boat. They come only from the pictures
+//! that the boat's agent receives: its own sensors, its team's radio and the referee's messages,
+//! never from the simulator's true state.
 
 mod numbers;
 mod pyquaticus;

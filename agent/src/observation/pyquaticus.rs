@@ -133,7 +133,7 @@ fn toward(
 }
 
 /// Whether a boat was on a team's side of the scrimmage line a tick ago, on the field or not:
-/// Pyquaticus tests this before a boat moves, and not like `Field::is_own_side`.
+/// Pyquaticus tests this before a boat moves, and by a rule that differs from `Field::is_own_side`.
 fn is_own_side(situation: &Situation, (at, velocity): (Ned, Ned), team: usize) -> bool {
     let field = &situation.model.field;
     let before = at - velocity.scaled(situation.model.tick_s);

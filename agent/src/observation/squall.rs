@@ -48,8 +48,8 @@ pub(super) fn write(
     slots(situation, others(false), mates, out);
     let mut nearest: Vec<&OtherBoat> = others(true).collect();
     let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
-    // Sorted by distance: the scenario's order means nothing to a policy, and if there are fewer
-    // slots than enemies, the nearest are kept. Teammates keep their slots.
+    // Sort enemies by distance: the scenario's order means nothing to a policy, and if there are
+    // fewer slots than enemies, the nearest are kept. Teammates keep their slots.
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     slots(situation, nearest.into_iter(), enemies, out);
 }
@@ -196,8 +196,8 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     };
     out.extend([ahead_m * per_m, starboard_m * per_m]);
     out.push((distance_m / LENGTH_M).min(LENGTHS_MAX));
-    // In addition to the distance in hundreds of metres, in which the last ten metres, where boats
-    // tag and touch, would be a tenth of a unit.
+    // The nearness complements the distance in hundreds of metres, in which the last ten metres,
+    // where boats tag and touch, are only a tenth of a unit.
     out.push(NEAR_M / (NEAR_M + distance_m));
 }
 

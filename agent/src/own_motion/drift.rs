@@ -41,7 +41,7 @@ const NOISE_M_S: f64 = 0.05;
 const SPREAD_TIME_S: f64 = 20.0;
 /// Relative error of the slide computed from the boat file.
 const SLIDE_ERROR: f64 = 0.5;
-/// Correlation time of that error, s: a turn.
+/// Correlation time of that error, s: about one turn.
 const SLIDE_TIME_S: f64 = 4.0;
 
 /// The estimate. The default is that for an unknown boat.
@@ -75,8 +75,8 @@ impl DriftEstimate {
             return;
         }
         let (north, east, both) = self.variance;
-        // Bounded, so that a single wave does not determine the drift along an axis unobserved for
-        // an hour.
+        // The variance is bounded, so that a single wave does not determine the drift along an axis
+        // unobserved for an hour.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
         let north = grown(north);
         let east = grown(east);

@@ -12,7 +12,8 @@ const MEAN_OF_FIRST: f64 = 0.6;
 /// Minimum turn rate of a boat with thrusters as a fraction of the maximum: the helm keeps ordering
 /// more during a turn.
 const LEAST_OF_MOST: f64 = 0.3;
-/// The same for a point boat, which takes half a minute for the last degrees of a turn.
+/// Minimum turn rate of a point boat as a fraction of the maximum: such a boat takes half a minute
+/// for the last degrees of a turn.
 const LEAST_OF_POINT_BOAT: f64 = 0.1;
 /// Time constant of the observed turn rate, in seconds of turning.
 const MEMORY_S: f64 = 8.0;
@@ -122,7 +123,8 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
     // Full ahead on one side and full astern on the other, as a front seat steers with two
     // thrusters and no rudder.
     let moment_newton_m = thruster.arm_m * (ahead_newton + astern_newton);
-    // At half of the top speed: a moving hull resists turning more, and boats turn while moving.
+    // Evaluate at half of the top speed: a moving hull resists turning more, and boats turn while
+    // moving.
     let linear = hull.yaw_linear_kg_m2_s + 0.5 * hull.yaw_lift_kg_m * autopilot.speed_max_m_s;
     let quadratic = hull.yaw_quadratic_kg_m2;
     let steady_rad_s = if quadratic > 0.0 {
@@ -139,7 +141,7 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
         turn_rad_s,
         turn_least_rad_s: LEAST_OF_MOST * turn_rad_s,
         turn_per_rad_s: 0.5 * autopilot.heading_bandwidth_rad_s / autopilot.heading_damping,
-        // Half of the thrusters' capability, because changing thrust takes time.
+        // Assume half of the thrusters' capability, because changing thrust takes time.
         acceleration_m_s2: ahead_newton / mass_kg,
         deceleration_m_s2: astern_newton / mass_kg,
         slide_s: mass_kg / sway_kg_s,

@@ -24,11 +24,13 @@ use std::f64::consts::PI;
 /// a turn.
 const TURN_MAX_RAD: f64 = 2.6;
 /// A point boat whose thrust follows the order brakes fully if the order is lower than its speed by
-/// at least the loss of speed in this time, s.
+/// at least the speed that it can lose in this time, s.
 const BRAKES_S: f64 = 1.0;
 /// Turn angle from which a point boat is ordered more than its current speed, to have thrust for
 /// turning, and the angle from which it is ordered full speed, rad.
 const STEERS_FROM_RAD: (f64, f64) = (0.35, 1.0);
+/// Minimum ordered speed and maximum speed over the ground of a boat that something stops, m/s.
+const STOPPED_M_S: (f64, f64) = (1.0, 0.2);
 /// Minimum turn that keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;
 
@@ -59,6 +61,11 @@ pub(crate) struct OwnMotion {
     turn: SeenTurn,
     /// The desired heading and the heading ordered for it, rad; `None` after any other order.
     ordered: Option<(f64, f64)>,
+    /// The ordered speed, m/s, and for how long the boat has stood still regardless, s.
+    ordered_m_s: f64,
+    stopped_s: f64,
+    /// From the navigation point to the bow, m.
+    bow_m: f64,
     fix_at: SimTime,
     psi_rad: f64,
     surge_m_s: f64,
@@ -89,6 +96,9 @@ impl OwnMotion {
             offset: HeadingOffset::default(),
             turn: SeenTurn::default(),
             ordered: None,
+            ordered_m_s: 0.0,
+            stopped_s: 0.0,
+            bow_m: 0.5 * boat.length_m,
             fix_at: SimTime::ZERO,
             psi_rad: 0.0,
             surge_m_s: 0.0,
@@ -100,12 +110,21 @@ impl OwnMotion {
     /// let the boat follow its orders.
     pub(crate) fn observe(&mut self, own: &OwnBoat, step_s: f64, obeys: bool) {
         (self.psi_rad, self.surge_m_s) = (own.nav.psi_rad, own.nav.surge_m_s);
+        let (ordered_m_s, still_m_s) = STOPPED_M_S;
+        let is_stopped =
+            obeys && self.ordered_m_s > ordered_m_s && own.nav.surge_m_s.abs() < still_m_s;
+        self.stopped_s = if is_stopped {
+            self.stopped_s + step_s
+        } else {
+            0.0
+        };
         if !self.compensates || step_s <= 0.0 {
             return;
         }
         // A repeated velocity carries no new information.
         if own.fix_ns > self.fix_at {
-            // At most a second: after a gap in navigation, one velocity must not count as several.
+            // Count at most a second: after a gap in navigation, one velocity must not count as
+            // several.
             self.drift.observe(
                 &own.nav,
                 &self.file,
@@ -138,6 +157,16 @@ impl OwnMotion {
         } else {
             nav.pose().rotation().starboard().scaled(nav.sway_m_s)
         }
+    }
+
+    /// For how long the boat has stood still against its orders, s.
+    pub(crate) fn stopped_s(&self) -> f64 {
+        self.stopped_s
+    }
+
+    /// The distance from the navigation point to the bow, m.
+    pub(crate) fn bow_m(&self) -> f64 {
+        self.bow_m
     }
 
     /// Standard deviation of the velocity around the drift, m/s.
@@ -188,6 +217,7 @@ impl OwnMotion {
     /// The order for a heading (rad) and a speed through the water.
     pub(crate) fn order(&mut self, heading_rad: f64, speed_m_s: f64) -> Order {
         let heading_rad = wrap_pi(heading_rad);
+        self.ordered_m_s = speed_m_s;
         if !self.compensates {
             return Order::Steer {
                 heading_rad,
@@ -251,7 +281,7 @@ impl OwnMotion {
 
     /// Called for an order other than steering.
     pub(crate) fn hold(&mut self) {
-        (self.ordered, self.side) = (None, 0.0);
+        (self.ordered, self.ordered_m_s, self.side) = (None, 0.0, 0.0);
     }
 }
 
@@ -351,8 +381,8 @@ mod tests {
             ("large_usv_kinematic", 6.0, 0.1, 0.3, 5.5),
             ("large_usv_kinematic", 6.0, 0.1, 7.0, 7.0),
             ("surveyor_kinematic", 2.0, 0.1, 0.3, 0.3),
-            // It would cut its thrust, and with it the effect of its rudder, until it has slowed
-            // down.
+            // Otherwise the boat would cut its thrust, and with it the effect of its rudder, until
+            // it has slowed down.
             ("surveyor_kinematic", 1.0, 2.0, 0.3, 2.5),
             ("surveyor_kinematic", 2.0, 2.0, 0.3, 3.0),
             ("surveyor_kinematic", 0.0, 0.675, 0.1, 0.75),

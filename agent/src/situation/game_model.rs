@@ -144,7 +144,6 @@ impl TeamModel {
 
     /// Whether `at` is on the team's own side.
     pub(crate) fn is_own_side(&self, at: Ned) -> bool {
-        // A point inside both edges, not the corner itself, which lies on the boundary.
         self.field.is_own_side(self.team, at)
     }
 }

@@ -46,8 +46,8 @@ pub(super) fn assign(
     intruders: &[Intruder],
     before: &[Pair],
 ) -> Vec<Pair> {
-    // Greedy, not the best sum over all pairs: the intruder nearest to the flag matters most, and
-    // distant boats must not change the result.
+    // Assign greedily rather than by the best sum over all pairs: the intruder nearest to the flag
+    // matters most, and distant boats must not change the result.
     let mut left: Vec<&Interceptor> = interceptors.iter().collect();
     let mut pairs = Vec::with_capacity(intruders.len().min(left.len()));
     for intruder in intruders {

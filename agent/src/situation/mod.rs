@@ -30,8 +30,8 @@ use turn_estimate::turning_on;
 
 /// Distance to an unknown object, m.
 const NOWHERE_M: f64 = 1e9;
-/// Maximum distance from the centre of its untagging place at which a boat was tagged there and
-/// must leave it, as a fraction of the radius.
+/// A boat that is tagged within this fraction of the radius from the centre of its untagging place
+/// must leave the place first.
 const WELL_INSIDE: f64 = 0.5;
 /// Fraction of the radius beyond which the boat counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
@@ -41,7 +41,7 @@ const WELL_OUTSIDE: f64 = 1.2;
 pub(crate) struct OtherBoat {
     pub(crate) vehicle: VehicleId,
     pub(crate) is_enemy: bool,
-    /// Its estimated current position.
+    /// Estimated current position.
     pub(crate) at: Ned,
     velocity: Velocity,
     pub(crate) psi_rad: f64,
@@ -49,7 +49,7 @@ pub(crate) struct OtherBoat {
     /// See [`OtherBoat::turning_on`]; only in a large fleet.
     turned: Option<MovingPoint>,
     pub(crate) tagged: bool,
-    /// Whether power play has put it out of action.
+    /// Whether power play has put the boat out of action.
     pub(crate) disabled: bool,
     pub(crate) carrying: Option<FlagId>,
     /// The earliest time of the boat's next tag: for a teammate from its own messages; for enemies
@@ -61,8 +61,8 @@ pub(crate) struct OtherBoat {
     pub(crate) intrudes: bool,
 }
 
-/// A velocity over the ground as received, m/s. It is rotated on demand, since few boats of a large
-/// team need it.
+/// A velocity over the ground as received, m/s. It is rotated on demand, since only a few boats of
+/// a large team require that.
 #[derive(Clone, Copy, Debug)]
 enum Velocity {
     Ned(Ned),
@@ -190,7 +190,7 @@ impl Situation {
             self.step_s,
             !(own.disabled || own.tagged && self.model.rules.tagged_boat == TaggedBoat::IsDriven),
         );
-        // Only if this boat has seen exactly the pictures in it.
+        // Use the team's view only if this boat has seen exactly the same pictures.
         match view.filter(|view| view.follows(&self.view)) {
             Some(view) => self.view = Arc::clone(view),
             None => TeamView::own(&mut self.view).take_in(picture),
@@ -211,7 +211,7 @@ impl Situation {
         let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
-        // With hysteresis: with a single limit, position noise would toggle the state.
+        // Use hysteresis: with a single limit, position noise would toggle the state.
         let from_home =
             self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
         self.leaving =
@@ -466,7 +466,8 @@ impl Values for Situation {
 fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>) -> f64 {
     let points = from.zip(to);
     match measure {
-        // Far away, but finite: expressions may subtract, and infinity minus infinity is NaN.
+        // The default is far away, but finite: expressions may subtract, and infinity minus
+        // infinity is NaN.
         Measure::Distance => points.map_or(NOWHERE_M, |(from, to)| from.at.distance(to.at)),
         Measure::Closing => points.map_or(0.0, |(from, to)| closing_m_s(from, to)),
         _ => 0.0,

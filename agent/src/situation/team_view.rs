@@ -22,7 +22,7 @@ const STILL_AFTER_S: f64 = 30.0;
 /// Time without a fix after which a boat of the team is dead reckoned, s: with the usual delays, it
 /// moves less than a receiver's error, and rotating the motion of a whole fleet takes time.
 const LATE_S: f64 = 0.5;
-/// Number of boats up to which all of them are compared with a place.
+/// Up to this many boats, all are compared with a place.
 const FEW: usize = 32;
 /// Width of the rows into which more boats are sorted, m.
 const ROW_M: f64 = 16.0;
@@ -68,7 +68,7 @@ pub struct TeamView {
 struct Pairings(Mutex<Vec<[Arc<[Pair]>; 2]>>);
 
 impl Clone for Pairings {
-    /// Empty: copying would only save computing them again.
+    /// Returns empty pairings: copying would only save computing them again.
     fn clone(&self) -> Pairings {
         Pairings::default()
     }
@@ -148,8 +148,8 @@ impl TeamView {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
-                // In games of 20 against 20 or more, rotating all of them to the field's frame
-                // measurably slowed down decisions, and only few are needed.
+                // In games of 20 against 20 or more, rotating all velocities to the field's frame
+                // measurably slowed down decisions, and only a few are needed.
                 velocity: Velocity::Body(velocity),
                 psi_rad: mate.nav.psi_rad,
                 yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
@@ -239,7 +239,7 @@ impl TeamView {
     /// Calls `each` with the index and the distance (m) of every boat within this distance of a
     /// place, in any order.
     pub(super) fn near(&self, at: Ned, reach_m: f64, mut each: impl FnMut(usize, f64)) {
-        // No square root for boats that are far away.
+        // Avoid the square root for boats that are far away.
         let far_m2 = reach_m * reach_m * (1.0 + 1e-9);
         let mut look = |i: usize, there: Ned| {
             let squared = at.distance_squared(there);
@@ -286,7 +286,7 @@ impl TeamView {
         }
     }
 
-    /// The interception pairs that follow from these.
+    /// The interception pairs that follow from `before`.
     pub(super) fn pairs_after(&self, before: &Arc<[Pair]>) -> Arc<[Pair]> {
         let mut known = self
             .pairings

@@ -147,7 +147,7 @@ mod tests {
             carrying: -1,
         };
         let mut turn = TurnEstimate::seen(None, &contact(0, 3.0));
-        // Through south, where headings wrap, with each heading shown twice.
+        // The boat turns through south, where headings wrap, and each heading is shown twice.
         for ms in (100..5_000).step_by(100) {
             let psi_rad = primitives::angle::wrap_pi(3.0 + 0.3 * 0.001 * ms as f64);
             for _ in 0..2 {

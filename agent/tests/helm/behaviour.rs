@@ -25,7 +25,7 @@ fn here() -> Picture {
     alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
 }
 
-/// The same with one contact; all other boats are far away.
+/// Like [`here`], with one contact; all other boats are far away.
 fn with_contact(own: Boat, contact: Boat) -> Picture {
     picture(
         0.0,
@@ -47,7 +47,7 @@ fn boat(text: &str) -> Boat {
     }
 }
 
-/// Whether a decision has the expected course and speed, or there is none as expected.
+/// Whether a decision is as expected: a course and a speed, or none.
 fn is_wanted(report: &HelmReport, want: &str) -> bool {
     match report
         .course_deg
@@ -180,7 +180,7 @@ fn a_loiter_goes_round_the_way_it_is_told() {
 #[test]
 fn a_loiter_goes_all_the_way_round() {
     let ring = "kind = 'loiter'\nellipse = { centre = [0, 0], along_m = 60, across_m = 30 }\nturn = 'clockwise'\nspeed_m_s = 2";
-    // It turns at once.
+    // The boat turns at once.
     let track = driven(
         ring,
         Boat::at(0.0, 15.0).going(90.0, 2.0),
@@ -209,7 +209,7 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
         let behaviour = format!(
             "kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'"
         );
-        // Beyond its own side, where no boat can be tagged.
+        // The contact is beyond the boat's own side, where no boat can be tagged.
         let report = alone_decides(
             &behaviour,
             &with_contact(Boat::at(10.0, 0.0), Boat::at(10.0, distance_m)),
@@ -266,6 +266,43 @@ fn obstacles_are_passed() {
     assert!(
         miss_m > 2.9,
         "passes its edge at {miss_m} m on course {course_rad} rad"
+    );
+}
+
+#[test]
+fn a_boat_that_an_obstacle_stops_unexpectedly_backs_off() {
+    let program = "[behaviour.go]\nkind = 'waypoint'\npoints = [[60, 34]]\nweight = 100\n\
+        [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
+    let mut helm = helm(&without_safety(program));
+    // By its receiver it passes north of the disc of 2 m at (0, 30). It stands still nevertheless.
+    let stopped = |tenth: u32| {
+        let at_s = 0.1 * f64::from(tenth);
+        alone(at_s, Boat::at(-2.9, 34.0).going(90.0, 0.0))
+    };
+    let courses_deg: Vec<f64> = (0..50)
+        .map(|tenth| steered(&mut helm, &stopped(tenth)).0)
+        .collect();
+    assert!(courses_deg[10] < 90.0, "{courses_deg:?}");
+    assert!((courses_deg[49] - 270.0).abs() < 0.51, "{courses_deg:?}");
+}
+
+#[test]
+fn a_boat_of_a_fleet_starts_early_to_pass_a_teammate_port_to_port() {
+    let program = "base = \"SCENARIOS/strategies/strategy_4_assigned.toml\"\n";
+    let meeting = |mate: Boat| {
+        let own = Boat::at(-40.0, 0.0).going(90.0, 2.5);
+        let enemies = [Boat::at(75.0, 35.0), Boat::at(75.0, -35.0)];
+        steered(
+            &mut helm(&scenario(program)),
+            &picture(0.0, [own, mate], enemies),
+        )
+        .0
+    };
+    let alone_deg = meeting(Boat::at(-75.0, -35.0));
+    let course_deg = meeting(Boat::at(-4.0, 0.0).going(270.0, 2.5));
+    assert!(
+        course_deg > alone_deg + 5.0,
+        "{course_deg}, alone {alone_deg}"
     );
 }
 

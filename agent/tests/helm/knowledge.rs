@@ -68,7 +68,7 @@ fn measures_are_of_one_place_or_between_two() {
 
 #[test]
 fn boats_of_the_team_go_on_while_their_fixes_drop_out() {
-    // Two boats going east at 2 m/s that turn north, with no fix since 10 s.
+    // Two boats going east at 2 m/s that turn north, with their last fix at 10 s.
     let [own, mate] = [Boat::at(-20.0, 0.0), Boat::at(-40.0, 0.0)];
     let far = [Boat::at(70.0, 30.0), Boat::at(70.0, -30.0)];
     for expression in ["distance(own_flag)", "distance(mate_carrier, own_flag)"] {

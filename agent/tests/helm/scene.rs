@@ -20,8 +20,8 @@ pub(crate) fn scenario(strategy: &str) -> Scenario {
     ])
 }
 
-/// The scenario of `game.toml` among these files, in which `SCENARIOS` stands for the folder of the
-/// shipped files.
+/// The scenario of `game.toml` among these files, in which `SCENARIOS` is replaced with the folder
+/// of the shipped files.
 pub(crate) fn loaded(files: &[(&str, &str)]) -> Scenario {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -133,7 +133,7 @@ pub(crate) fn set_time(picture: &mut Picture, at_s: f64) {
     picture.own.iter_mut().for_each(|boat| boat.fix_ns = now);
 }
 
-/// A position far from all other boats.
+/// A picture of a boat far from all other boats.
 pub(crate) fn alone(at_s: f64, own: Boat) -> Picture {
     picture(
         at_s,

@@ -1,4 +1,4 @@
-//! The solver compared with the whole grid.
+//! The solver compared with an exhaustive search of the grid.
 
 use crate::scene::{self, random_table, solved};
 use agent::ivp::{

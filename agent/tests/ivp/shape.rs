@@ -72,7 +72,7 @@ fn a_peak_falls_to_its_edge_and_then_to_nothing() {
             &format!("speed {j}"),
         );
     }
-    // A limit at 1 m/s: half of a peak around rest, with and without a tolerance.
+    // A limit at 1 m/s: half of a peak at zero speed, with and without a tolerance.
     for (base_m_s, points) in [
         (
             0.5,
@@ -105,7 +105,7 @@ fn searched_m(closest: &Closest, grid: &Grid, k: usize, j: usize) -> f64 {
         north: cos,
         east: sin,
     };
-    // From a position, with a velocity, for a duration.
+    // The closest distance from a position, with a velocity, for a duration.
     let least = |from: Ned, velocity: Ned, time_s: f64| {
         let times = (0..=TIMES).map(|i| time_s * i as f64 / TIMES as f64);
         times
@@ -230,7 +230,7 @@ fn a_contact_on_the_other_side_counts_a_fifth() {
             lag: None,
         })
     };
-    // It is 40 m ahead: a course 20 degrees to starboard leaves it to port.
+    // The contact is 40 m ahead: a course 20 degrees to starboard leaves it to port.
     let passes_m = 40.0 * primitives::math::sin_cos(20_f64.to_radians()).0;
     for (course, to_port, to_starboard) in [
         (2, passes_m, 0.2 * passes_m),

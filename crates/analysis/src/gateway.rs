@@ -54,7 +54,7 @@ pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
 
 /// The gateway of a boat, from the recording of a game or of the gateway itself.
 pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
-    // A gateway's recording begins when the gateway starts, which is disarmed at first.
+    // A gateway's recording begins when the gateway starts, and it starts disarmed.
     let state = (bag.kind == Kind::Gateway).then(|| "disarmed".to_owned());
     let mut gateway = Gateway {
         boat: boat.to_owned(),
@@ -82,7 +82,7 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
         };
         if let Some(state) = event["event"]["state"]["to"].as_str() {
             gateway.state = Some(state.to_owned());
-            // The recording has no status that lists them.
+            // The recording has no status that lists its failsafes.
             if let Some(cause) = state
                 .strip_prefix("failsafe: ")
                 .filter(|_| bag.kind == Kind::Gateway)

@@ -56,8 +56,8 @@ impl GameSeries {
         GameSeries::of_at_most(recording, SAMPLES_MAX)
     }
 
-    /// The same, downsampled to at most this many samples of all boats together, plus the last
-    /// decision.
+    /// Like [`GameSeries::of`], downsampled to at most this many samples of all boats together,
+    /// plus the last decision.
     pub fn of_at_most(recording: &Recording, samples_max: usize) -> GameSeries {
         let scenario = recording.scenario();
         let all = recording

@@ -37,7 +37,7 @@ pub struct BoatStatistics {
     pub counts: Counts,
     /// Error of its own navigation.
     pub navigation: Option<NavigationError>,
-    /// Error of its heading and speed against its orders.
+    /// Error of its heading and speed relative to its orders.
     pub steering: Option<SteeringError>,
 }
 
@@ -186,7 +186,7 @@ impl BoatSums {
     }
 }
 
-/// A mean of squares, accumulated one by one.
+/// A mean of squares, accumulated value by value.
 #[derive(Clone, Copy, Debug, Default)]
 struct MeanSquare {
     sum: f64,

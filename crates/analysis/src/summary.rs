@@ -63,8 +63,8 @@ pub struct Topic {
     pub count: u64,
     /// Their total size, bytes.
     pub bytes: u64,
-    /// Messages per simulated second, from the first to the last; `None` if less than a tenth of a
-    /// second lies between these.
+    /// Messages per simulated second, from the first to the last; `None` if these are less than a
+    /// tenth of a second apart.
     pub rate_hz: Option<f64>,
 }
 

@@ -41,7 +41,7 @@ pub(crate) fn apart(
     let track_b: Vec<Ned> = in_b.track().collect();
     let distance_m =
         |(time_s, at): (&f64, &Ned)| at.distance(place_at(&b.times_s, &track_b, *time_s));
-    // At the samples of the first game.
+    // Compare at the times of the first game's samples.
     let distances_m: Vec<f64> = times_s.iter().zip(&common_a).map(distance_m).collect();
     let final_m = *distances_m.last()?;
     Some(TrackDifference {

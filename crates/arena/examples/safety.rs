@@ -25,7 +25,8 @@ struct Tally {
     left: usize,
     /// Of those, within five seconds after hulls touched.
     left_pushed: usize,
-    /// Of those not pushed out, by a boat within 15 m of another, giving way or chasing.
+    /// Of those not pushed out, times that the boat was within 15 m of another, giving way or
+    /// chasing.
     left_crowded: usize,
     /// Times two hulls came into contact.
     touched: usize,

@@ -26,8 +26,8 @@ struct Rights {
 /// Any node that reaches a hub without keys.
 const ANYBODY: Rights = Rights {
     publishes: &[
-        // All levels below, not just one: without keys, the team in the topic proves nothing, and
-        // the sim checks the ticket of each order anyway.
+        // Allow all levels below, not just one: without keys, the team in the topic proves nothing,
+        // and the sim checks the ticket of each order anyway.
         "order/**",
         "say/{team}",
         "policy/{boat}",
@@ -107,8 +107,8 @@ const GATEWAY: Rights = Rights {
     asks: &["scenario", "join/gateway/{boat}"],
     answers: &["operate/{boat}"],
 };
-// Receives everything that is published and the decisions of helms, and may stop boats like every
-// node, but may change nothing else.
+// An observer receives everything that is published and the decisions of helms. Like every node it
+// may stop boats, but it may change nothing else.
 const OBSERVER: Rights = Rights {
     publishes: &["control", "stop/{boat}"],
     asks: &["scenario", "events", "water", "helm/{boat}"],

@@ -20,7 +20,7 @@ use zenoh::sample::SampleKind;
 use zenoh::session::LinkEvent;
 use zenoh::{Session, Wait};
 
-/// Interval at which the port is checked, and interval while many connections are pending.
+/// Interval at which the port is checked, and the interval while many connections are pending.
 const POLL: Duration = Duration::from_millis(100);
 const LOOK_OFTEN: Duration = Duration::from_millis(10);
 
@@ -29,7 +29,7 @@ type Links = Mutex<BTreeSet<Ends>>;
 /// The state of the port.
 struct Port {
     numbers: Vec<u16>,
-    /// zenoh keeps them open until the session closes.
+    /// The listening sockets, which zenoh keeps open until the session closes.
     listeners: Vec<RawFd>,
     files: OpenFiles,
     waiting_max: usize,
@@ -54,8 +54,8 @@ pub(crate) fn begin(
         };
         match event.kind() {
             SampleKind::Put => links.lock().insert(ends),
-            // Identified by both addresses, since descriptors are reused: the same number may now
-            // be a different connection.
+            // Links are identified by both addresses, since descriptors are reused: the same number
+            // may now be a different connection.
             SampleKind::Delete => links.lock().remove(&ends),
         };
     };
@@ -97,7 +97,7 @@ pub(crate) fn begin(
 }
 
 impl Port {
-    /// Finds pending connections, ends the surplus, and returns when to check again.
+    /// Finds pending connections, ends the surplus ones, and returns the time until the next check.
     fn look(&mut self, links: &Links) -> Duration {
         // Listing descriptors needs a descriptor itself. If that fails, the reserved ones are lent
         // first.
@@ -124,7 +124,7 @@ impl Port {
                 found.insert(ends, descriptor);
             }
         }
-        // By now, connections that have since become links are known.
+        // Read the links only now, so that connections that have since become links are known.
         let links = links.lock().clone();
         let lent: Vec<(Ends, RawFd)> = found
             .iter()
@@ -163,7 +163,7 @@ impl Port {
     fn close(&mut self, is_closed: bool) {
         if self.is_closed != is_closed {
             self.is_closed = is_closed;
-            // In this order, since new connections would take the lent descriptors.
+            // The order matters: new connections would take the lent descriptors.
             self.listeners
                 .iter()
                 .for_each(|listener| filter(*listener, is_closed));

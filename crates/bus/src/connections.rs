@@ -1,5 +1,5 @@
 //! The open connections of a server with limited slots: a new connection always gets one, if
-//! necessary that of the connection idle longest.
+//! necessary by evicting the connection that has been idle longest.
 
 use parking_lot::Mutex;
 use std::collections::BTreeMap;
@@ -68,8 +68,8 @@ impl Connections {
             },
         );
         drop(open);
-        // Outside the lock: closing calls the connection's owner, which may drop its slot and so
-        // take the lock.
+        // Close outside the lock: closing calls the connection's owner, which may drop its slot and
+        // so take the lock.
         surplus.into_iter().for_each(|entry| (entry.close)());
         Slot {
             open: Arc::clone(&self.open),
@@ -92,8 +92,9 @@ impl Open {
             .for_each(|entry| *by_address.entry(entry.from).or_insert(0) += 1);
         let share = |entry: &Entry| by_address.get(&entry.from).copied().unwrap_or(0);
         let most_idle =
-            // The address with the most connections first: a host that opens thousands evicts its
-            // own, while a host with a single connection keeps it, however long it is idle.
+            // Prefer the address with the most connections: a host that opens thousands evicts its
+            // own connections, while a host with a single connection keeps it, however long it is
+            // idle.
             |(_, a): &(&u64, &Entry), (_, b): &(&u64, &Entry)| share(b).cmp(&share(a)).then(a.used.cmp(&b.used));
         self.connections
             .iter()

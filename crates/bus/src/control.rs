@@ -72,8 +72,8 @@ fn ask(bus: &Bus, key: &str, control: Control, limit: Duration, answered: &Arc<A
     let bus = bus.clone();
     let key = key.to_owned();
     let answered = Arc::clone(answered);
-    // In its own thread: a query blocks until answered or timed out, and the stop must be repeated
-    // meanwhile.
+    // Query in a separate thread: a query blocks until answered or timed out, and the stop must be
+    // repeated meanwhile.
     let asked = start_thread("stop-question", move || {
         if let Some(reply) = bus.request(&key, &control, limit).transpose() {
             answered.visit(|answered| *answered = Some(reply));

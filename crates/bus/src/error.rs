@@ -20,7 +20,7 @@ pub enum BusError {
     Setting {
         /// The key of the setting.
         key: String,
-        /// Its value.
+        /// The value of the setting.
         value: String,
         /// zenoh's error.
         reason: String,

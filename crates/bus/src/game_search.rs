@@ -18,10 +18,10 @@ pub const ANSWER: Duration = Duration::from_secs(2);
 /// Why a game or a part of it is missing.
 #[derive(Debug, Error)]
 pub enum Missing {
-    /// It may appear later.
+    /// The missing part may appear later.
     #[error("{0}")]
     Yet(String),
-    /// It will never appear.
+    /// The missing part will never appear.
     #[error(transparent)]
     Forever(#[from] Refusal),
 }
@@ -208,7 +208,7 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
 
 /// The sim's description of its game, once validated.
 fn understood(answer: &[u8]) -> Result<GameInfo, Refusal> {
-    // The version first: if it differs, the rest may be unreadable.
+    // Check the version first: if it differs, the rest may be unreadable.
     let value: serde_json::Value = serde_json::from_slice(answer).unwrap_or_default();
     let version = value
         .get("version")
@@ -253,8 +253,8 @@ pub fn join(
     // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // Tell the sim the node's session, so that it can act as soon as that link ends. A killed
-    // process closes its socket, and its boats hold in the same decision.
+    // Tell the sim the identifier of the node's session, so that it can act as soon as that link
+    // ends. A killed process closes its socket, and its boats hold in the same decision.
     let version = primitives::VERSION.to_owned();
     let node = bus.id();
     let asked = clock::now();
@@ -289,8 +289,8 @@ pub fn join(
     }
 }
 
-/// Checks that the keys, if any, allow joining in this role: the hub drops queries without the
-/// right.
+/// Checks that the keys, if any, allow joining in this role: the hub drops queries that the keys do
+/// not allow.
 fn check_keys(
     bus: &Bus,
     scenario: &Scenario,

@@ -51,10 +51,10 @@ fn disable_for(link: &Link) {
 /// stays open, because zenoh holds its link during the report.
 fn disable_if(descriptor: RawFd, ends: Ends) {
     if matches!(descriptor::kind(descriptor), Kind::Connection(found) if found == ends) {
-        // A closed socket no longer needs it, so errors are ignored. Disable it instead of setting
-        // zero: with a linger time of zero, the system discards unsent data. Incomplete links are
-        // not reported here; for these, the build settings in `.cargo/config.toml` remove zenoh's
-        // linger time. Without this, `strace -f -T -e close` showed `close` taking 10.0 s;
+        // Errors are ignored: a closed socket has no linger time. The option is disabled rather
+        // than set to zero: with a linger time of zero, the system discards unsent data. Incomplete
+        // links are not reported here; for these, the build settings in `.cargo/config.toml` remove
+        // zenoh's linger time. Without this, `strace -f -T -e close` showed `close` taking 10.0 s;
         // `tests/process/network.rs` guards against it.
         drop(descriptor::with_socket(descriptor, |socket| {
             socket.set_linger(None)

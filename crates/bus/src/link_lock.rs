@@ -23,7 +23,7 @@ pub struct LinkLock(
 /// Why locking a link failed.
 #[derive(Debug, Error)]
 pub enum LinkLockError {
-    /// A different process holds it.
+    /// A different process holds the link.
     #[error("another gateway on this machine holds the link {link}: {}", .holder.map_or("a process that is \
         ending".to_owned(), |pid| format!("process {pid}")))]
     Held {
@@ -60,7 +60,8 @@ impl LinkLock {
             .mode(0o600)
             .clone();
         let mut file = options.open(path).map_err(failed)?;
-        // A system lock, not the existence of a file: it ends with its process, however that ends.
+        // Use a system lock, not the existence of a file: the lock ends with its process, however
+        // the process ends.
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
@@ -95,7 +96,7 @@ fn read(file: &mut File) -> Option<u32> {
     text.trim().parse().ok()
 }
 
-/// The lock file of a link; a device is identified by itself, not by its path.
+/// The lock file of a link; a device is identified by its real path, not by a symbolic link.
 fn path(link: &str) -> io::Result<PathBuf> {
     let device = link
         .strip_prefix("serial://")

@@ -23,8 +23,8 @@ pub struct Entry {
     pub pid: u32,
     /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
-    /// Whether it only simulates the water for emulated boats; commands use such a game only by
-    /// name.
+    /// Whether the game only simulates the water for emulated boats; commands use such a game only
+    /// by name.
     #[serde(default)]
     pub is_water: bool,
 }
@@ -36,7 +36,7 @@ pub struct GatewayEntry {
     pub vehicle: String,
     /// The game that it should join; if unset, the only one running.
     pub game: Option<String>,
-    /// Its control port.
+    /// The gateway's control port.
     pub control: SocketAddr,
     /// Process number of the gateway.
     pub pid: u32,
@@ -156,7 +156,7 @@ impl Registration {
 
 impl Drop for Registration {
     fn drop(&mut self) {
-        // A different process may have removed it already.
+        // A different process may have removed the file already.
         drop(fs::remove_file(&self.0));
     }
 }

@@ -39,7 +39,6 @@ const LINKS: [(&str, &str); 5] = [
 /// How a hub treats messages from other nodes. All are dropped if they would have to wait for their
 /// outgoing link. An answer has the settings of its query, and only the queue of this priority has
 /// space for the longest answers: a scenario with a network has 216 kB.
-/// priority has room for the longest answers: a scenario with a network has 216 kB.
 fn qos(game: &GameName) -> String {
     let long = [
         topic::scenario(game),
@@ -54,8 +53,8 @@ fn qos(game: &GameName) -> String {
 }
 
 /// Limits of a hub for data from others: a helm report fits into a message of 2 MB, a join request
-/// into a query of 64 kB, the orders for a thousand boats into 256 kB. A connecting node has this
-/// time to identify itself.
+/// into a query of 64 kB, the orders for a thousand boats into 256 kB. The last limit is the time
+/// for a connecting node to identify itself.
 const MESSAGE_MAX: usize = 1 << 21;
 const QUESTION_MAX: usize = 1 << 16;
 const PUBLISHED_MAX: usize = 1 << 18;
@@ -112,7 +111,7 @@ impl Net {
             .filter(|keys| keys.identity != Identity::Sim)
         {
             let reason = format!(
-                "a sim needs the keys of sim, not those of {}",
+                "a sim needs the keys of the role sim, not those of {}",
                 keys.identity
             );
             return Err(BusError::Keys(format!(
@@ -139,7 +138,8 @@ impl Net {
             .collect();
         set(&mut config, "listen/endpoints", &json!(listen).to_string())?;
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
-        // Our messages carry simulated time; a hybrid clock in every sample would only add cost.
+        // Our messages carry simulated time; a hybrid logical timestamp in every sample would only
+        // add cost.
         set(&mut config, "timestamping/enabled", "false")?;
         // Whatever a node requests, its messages through the hub never wait; otherwise all others
         // would wait, too.
@@ -166,8 +166,8 @@ impl Net {
         set(&mut config, "mode", "\"client\"")?;
         // Without an endpoint, a leaf on a local network scouts for a hub.
         set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
-        // One attempt: the search for a game looks up the place before each, since the next sim may
-        // have a different place and token.
+        // Make only one attempt: the search for a game looks up the place before each attempt,
+        // since the next sim may have a different place and token.
         set(&mut config, "connect/timeout_ms", "0")?;
         set(&mut config, "connect/exit_on_failure", "true")?;
         Ok(config)
@@ -279,8 +279,8 @@ fn limit_strangers(config: &mut Config, game: &GameName, nodes: usize) -> Result
         // zenoh would refuse the newcomer; `crate::admission` ends another connection first.
         ("transport/unicast/accept_pending", (2 * nodes).to_string()),
         ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
-        // Smaller than a leaf's: each link keeps the fragments of a message until they are
-        // complete.
+        // This limit is smaller than a leaf's: each link keeps the fragments of a message until
+        // they are complete.
         (
             "transport/link/rx/max_message_size",
             MESSAGE_MAX.to_string(),

@@ -1,5 +1,4 @@
-//! A hub's limit of open files. Some files are reserved for when all others are in use.
-//! taken.
+//! A hub's limit on open files. Some are reserved for when all others are in use.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 

@@ -40,9 +40,9 @@ impl RosSession {
         };
         let open = |mut config: zenoh::Config| {
             // A decision's messages follow each other closely. While one is being written, zenoh's
-            // sender waits up to two milliseconds for it; with this, less than one. From the sim to
-            // a subscriber of all topics the median is 0.5 ms in place of 0.7 ms. (Messages that
-            // are `express` overflow the queue of batches: most were lost.)
+            // sender waits up to two milliseconds for it; with this setting, less than one. From
+            // the sim to a subscriber of all topics the median is 0.5 ms instead of 0.7 ms.
+            // (Messages that are `express` overflow the queue of batches: most were lost.)
             set(
                 &mut config,
                 "transport/link/tx/queue/batching/time_limit",
@@ -68,7 +68,7 @@ impl RosSession {
                     reason: reason.to_owned(),
                 })
             }
-            // A mesh of ROS 2 nodes needs one known router to find each other.
+            // The ROS 2 nodes of a mesh need one known router to find each other.
             Err(_) if is_loopback(endpoint) => Ok(RosSession {
                 session: open(net.ros_router(endpoint)?)?,
                 is_router: true,

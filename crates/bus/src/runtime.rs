@@ -72,8 +72,8 @@ static REPLACED: OnceLock<&'static dyn Runtime> = OnceLock::new();
 
 /// The runtime of this process.
 pub(crate) fn runtime() -> &'static dyn Runtime {
-    // One per process, not passed to each constructor: a boat's supervisor, an inbox and a stop
-    // order would all have to hold it, and two could meet in one node.
+    // There is one runtime per process, not passed to each constructor: a boat's supervisor, an
+    // inbox and a stop order would all have to hold it, and two runtimes could meet in one node.
     REPLACED.get().copied().unwrap_or(&System)
 }
 
@@ -115,7 +115,7 @@ impl Runtime for System {
         {
             use rustix::time::{ClockId, clock_gettime};
             let read = |id| Duration::try_from(clock_gettime(id)).unwrap_or_default();
-            // In this order, the difference is never too large.
+            // Read in this order, so that the difference is never too large.
             let boot_time = read(ClockId::Boottime);
             // `CLOCK_MONOTONIC` stops while a machine is suspended, `CLOCK_BOOTTIME` does not. The
             // difference is time lost, for example with the lid closed, which a sim counts against

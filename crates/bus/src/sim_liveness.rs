@@ -15,9 +15,11 @@ use std::time::{Duration, Instant};
 pub struct Patience {
     /// Limit in every case.
     pub silence: Duration,
-    /// Limit if it was heard until its token disappeared: the link may only have been reopened.
+    /// Limit if the sim was heard until its token disappeared: the link may only have been
+    /// reopened.
     pub missing: Duration,
-    /// Limit if it was never heard and its token disappeared: it has died, or the link has failed.
+    /// Limit if the sim was never heard and its token disappeared: it has died, or the link has
+    /// failed.
     pub unheard: Duration,
 }
 
@@ -120,9 +122,9 @@ impl SimLiveness {
             missing,
             unheard,
         } = self.patience;
-        // The order decides. A dying sim is heard until its token disappears. If the link fails,
-        // silence comes first and zenoh drops the link after 10 s; an agent that left then would be
-        // missing when the cable is plugged in again.
+        // The order of the signs decides. A dying sim is heard until its token disappears. If the
+        // link fails, silence comes first and zenoh drops the link after 10 s; an agent that left
+        // then would be missing when the cable is plugged in again.
         let is_cut_off =
             |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {

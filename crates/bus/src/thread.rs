@@ -17,8 +17,7 @@ pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io
 /// How long a node waits for a thread that should end; the network may block the thread for 10 s.
 const END_MAX: Duration = Duration::from_millis(1200);
 
-/// A thread that is joined when dropped, unless it does not end soon. Its work must be done by
-/// then.
+/// A thread that is joined on drop, provided that it ends soon. Its work must be done by then.
 pub struct NodeThread {
     is_done: Arc<Watched<bool>>,
     handle: Option<JoinHandle<()>>,
@@ -52,7 +51,7 @@ impl NodeThread {
 
 impl Drop for NodeThread {
     fn drop(&mut self) {
-        // Before `join`: not every runtime returns a handle.
+        // Wait before `join`: not every runtime returns a handle.
         if self.is_done.wait(END_MAX, |is_done| *is_done) {
             // A panicked thread has no result.
             self.handle

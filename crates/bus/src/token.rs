@@ -259,7 +259,8 @@ impl Guard {
                 .iter()
                 .position(|(challenge, _)| *challenge == proof.challenge)
         {
-            // Before verifying the proof: a challenge is valid for one attempt, right or wrong.
+            // Remove the challenge before verifying the proof: it is valid for one attempt, right
+            // or wrong.
             self.open.remove(i);
             if token.is_proven(&proof, key, body.get().as_bytes()) {
                 return Checked::Granted(request);

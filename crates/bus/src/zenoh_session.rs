@@ -194,8 +194,8 @@ impl Session for ZenohSession {
             .consolidation(ConsolidationMode::None);
         let query =
             query.attachment((!question.attachment.is_empty()).then_some(question.attachment));
-        // `express`: do not hold the query back to fill a batch. It is small, and its sender waits
-        // for the answer.
+        // `express`: do not hold the query back to fill a batch. The query is small, and its sender
+        // waits for the answer.
         let query = query
             .congestion_control(CongestionControl::Drop)
             .priority(priority)
@@ -212,7 +212,7 @@ impl Session for ZenohSession {
         let token = self.0.liveliness().declare_token(key.clone()).wait();
         token
             .map(Declaration::new)
-            .map_err(failed("be alive as", &key))
+            .map_err(failed("declare the liveliness token", &key))
     }
 
     fn watch_alive(&self, key: String, receive: OnToken) -> Result<Declaration, BusError> {
@@ -232,8 +232,8 @@ impl Session for ZenohSession {
     }
 
     fn watch_links(&self, receive: OnLinkLost) -> Result<Declaration, BusError> {
-        // The link, not a liveliness token: any node could declare a token in the name of an agent,
-        // and the link of a dead process ends immediately.
+        // Watch the link, not a liveliness token: any node could declare a token in the name of an
+        // agent, and the link of a dead process ends immediately.
         let callback = move |event: zenoh::session::TransportEvent| {
             if event.kind() == SampleKind::Delete {
                 receive(event.transport().zid().to_string());

@@ -19,18 +19,18 @@ pub const RUNTIME: &str =
     // left, and all agents were lost for three seconds.
     "(rx:(worker_threads:1),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
-/// The same for the hub of a game paced by the clock: it may include real boats, and people must be
-/// able to stop them. A receiving thread serves no other link while its current link has data: each
-/// peer that sends without pause occupies one thread, and an E-stop needs a free one. In lockstep,
-/// where a second thread costs time, all boats are simulated.
+/// Like [`RUNTIME`], for the hub of a game paced by the clock: such a game may include real boats,
+/// which people must be able to stop. A receiving thread serves no other link while its current
+/// link has data: each peer that sends without pause occupies one thread, and an E-stop needs a
+/// free one. In lockstep, where a second thread costs time, all boats are simulated.
 pub const HUB_RUNTIME: &str =
     // Measured with 250 E-stops under 400,000 messages of garbage a second: 12.4 ms (median) to 124
     // ms with one receiving thread, less than 0.1 ms to 6.6 ms with two.
     "(rx:(worker_threads:4),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
-/// The same for a process with keys. zenoh (1.10, `zenoh-link-tls`) reads and writes a TLS link at
-/// once through one object that is not thread-safe: with two threads, rustls' state is overwritten
-/// and the process dies. Therefore a single thread does everything.
+/// Like [`RUNTIME`], for a process with keys. zenoh (1.10, `zenoh-link-tls`) reads and writes a TLS
+/// link at once through one object that is not thread-safe: with two threads, rustls' state is
+/// overwritten and the process dies. Therefore a single thread does everything.
 pub(crate) const KEYS_RUNTIME: &str =
     // With two threads and sixteen agents in lockstep the sim died within a minute. Upstream should
     // split the stream, or use one lock for both halves; the alternative is QUIC, which has one
@@ -61,6 +61,8 @@ pub fn restart_for_keys() -> Result<(), BusError> {
     ))
 }
 
+/// Checks that this process has the threads that a session with keys requires.
+///
 /// # Errors
 /// [`BusError::Threads`] if this process may not open a session with keys.
 pub(crate) fn check_threads_for_keys() -> Result<(), BusError> {

@@ -211,7 +211,7 @@ fn keys_are_for_their_owner_only_and_never_written_over() {
     );
 }
 
-/// Whether `to` receives messages published by `from`. It does not if only a later message arrives.
+/// Whether `to` receives messages published by `from`. False if only a later message arrives.
 fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
     let heard = Arc::new(Watched::new((false, false)));
     let [of_word, of_free] = [Arc::clone(&heard), Arc::clone(&heard)];
@@ -226,7 +226,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         })
         .expect("open"),
     );
-    // Over QUIC in datagrams, which are subject to the same rights as reliable messages.
+    // QUIC datagrams are subject to the same rights as reliable messages.
     let publisher = |word| {
         from.publisher_with(key(word), Priority::Normal, Delivery::Newest)
             .expect("open")
@@ -239,7 +239,7 @@ fn is_heard(from: &Bus, to: &Bus, word: &str, free: &str) -> bool {
         asked.send_raw(vec![1]).expect("open");
         sure.send_raw(vec![1]).expect("open");
     }
-    // Once more, now that all nodes know each other.
+    // Publish once more, now that all nodes know each other.
     asked.send_raw(vec![1]).expect("open");
     heard.visit(|(_, free)| *free = false);
     sure.send_raw(vec![1]).expect("open");

@@ -1,5 +1,5 @@
-//! The wall clock of commands that play in this process. Nodes use that of `bus`, which a simulated
-//! network can replace.
+//! The wall clock of commands that play games in this process. Nodes use the clock of `bus`, which
+//! a simulated network can replace.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ pub fn now() -> Instant {
     Instant::now()
 }
 
-/// Sleeps if there is no condition to wait for.
+/// Sleeps; use this only where there is no condition to wait for.
 #[expect(
     clippy::disallowed_methods,
     reason = "interval between polls of the stop flag"

@@ -8,7 +8,7 @@ use scenario::{Problem, Problems};
 use std::fmt;
 use std::process::ExitCode;
 
-/// The width limit of a quoted line, columns.
+/// Maximum width of a quoted line, columns.
 const COLUMNS: usize = 100;
 
 /// A mistake in the command line that the argument parser cannot detect.
@@ -80,7 +80,7 @@ pub fn line(error: &Error) -> String {
     })
 }
 
-/// A message without the system's error numbers: ` (os error 2)`.
+/// A message without the system's error numbers, such as ` (os error 2)`.
 pub(crate) fn without_number(message: &str) -> String {
     let mut parts = message.split(" (os error ");
     let first = parts.next().unwrap_or_default().to_owned();

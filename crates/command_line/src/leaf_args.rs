@@ -99,7 +99,7 @@ pub struct LeafArgs {
 
 impl LeafArgs {
     /// The gateways on this machine that a command may address. For a game elsewhere, these are
-    /// that game's gateways. A stop addresses too many rather than too few.
+    /// that game's gateways. A stop addresses too many gateways rather than too few.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
@@ -123,8 +123,8 @@ impl LeafArgs {
         !names_place && bus::local_registry().is_empty()
     }
 
-    /// The same arguments for an emulated boat. Without a name, they select the only water on
-    /// this machine.
+    /// The same arguments for an emulated boat. Without a name, they select the only water
+    /// simulation on this machine.
     pub fn in_water(mut self) -> LeafArgs {
         let water: Vec<bus::Entry> = bus::local_registry()
             .into_iter()
@@ -176,7 +176,7 @@ impl LeafArgs {
         }))
     }
 
-    /// The place of this game, or otherwise of the given one.
+    /// The place of this game, or else of the game that the arguments name.
     fn net_of(&self, game: Option<&GameName>, keys: Option<Arc<Bundle>>) -> Result<Net> {
         let game = game.or(self.game.as_ref());
         let mut connect = self.connect.clone();

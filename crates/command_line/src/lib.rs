@@ -1,4 +1,4 @@
-//! Shared by the command-line programs: arguments, terminal text, complete errors, the request to
+//! Code shared by the command-line programs: arguments, terminal text, full errors, the request to
 //! stop.
 
 pub mod clock;

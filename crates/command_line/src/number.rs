@@ -54,6 +54,7 @@ pub fn address(text: &str) -> Result<SocketAddr, String> {
 
 /// Parses the endpoint of a node from the command line.
 ///
+/// # Errors
 /// If it does not consist of a known protocol, a host and a port.
 pub fn endpoint(text: &str) -> Result<String, String> {
     const PROTOCOLS: [&str; 4] = ["tcp", "quic", "tls", "udp"];

@@ -64,7 +64,7 @@ pub fn or_newest(given: Option<&Path>) -> Result<PathBuf> {
     Ok(newest)
 }
 
-/// What to do in a folder without recordings.
+/// Advice for a folder without recordings.
 pub fn none_in(folder: &Path) -> String {
     format!(
         "no recordings in {}/; record a game, for example with: squall run strategy_4_vs_3",
@@ -116,7 +116,7 @@ struct Logs {
     game: Option<PathBuf>,
 }
 
-/// Finds MOOS logs: a file, or all logs in a folder and its subfolders, such as a mission's.
+/// Finds MOOS logs: a file, or all logs in a folder and its subfolders, such as those of a mission.
 fn logs(path: &Path) -> Result<Logs> {
     let folder = match path.parent() {
         _ if path.is_dir() => path,

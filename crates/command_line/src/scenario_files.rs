@@ -14,10 +14,10 @@ static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenarios");
 const FOLDER: &str = "scenarios";
 /// The extension of scenario files.
 const TOML: &str = "toml";
-/// The folder of policies within it, and their file extension.
+/// The folder of policies within `scenarios`, and their file extension.
 const POLICIES: (&str, &str) = ("policies", "onnx");
 
-/// The kinds of files that the program knows.
+/// The kinds of files that the program supports.
 static KINDS: OnceLock<&[Kind]> = OnceLock::new();
 
 /// Makes the built-in files available where files on disk are missing, and registers the known
@@ -187,7 +187,7 @@ fn located(
         .into_iter()
         .map(|folder| folder.join(&file));
     if let Some(path) = paths.find(|path| path.is_file()) {
-        // As a user would type it, so that the printed path can be used in a command.
+        // Print the path as a user would type it, so that it can be used in a command.
         let here = std::env::current_dir().unwrap_or_default();
         return Some(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
     }

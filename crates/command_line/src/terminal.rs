@@ -8,7 +8,7 @@ use primitives::printable;
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 
-/// The first error of standard output, other than its reader having closed it.
+/// The first error on standard output, except one caused by its reader closing it.
 static OUTPUT_ERROR: OnceLock<std::io::Error> = OnceLock::new();
 
 /// Checks that everything printed so far was written. `main` calls it last, so that a full disk is
@@ -46,7 +46,7 @@ pub fn is_seen(page: &str) -> bool {
     is_written("\x1b[H\x1b[J", &printable::coloured(page))
 }
 
-/// Sets when output has colours; `Auto` means if the terminal supports them and `NO_COLOR` is
+/// Sets when output has colours; with `Auto`, if the terminal supports them and `NO_COLOR` is
 /// unset.
 pub fn set_colour(choice: clap::ColorChoice) {
     let choice = match choice {

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The minimum number of observations for an interval: with fewer, all are often equal and would
-/// seem certain.
+/// The minimum number of observations for an interval: with fewer, all are often equal, and the
+/// interval would have no width.
 pub(crate) const OBSERVATIONS_MIN: usize = 5;
 
 /// The mean of independent observations with its 95 % confidence interval, by Student's t.
@@ -19,7 +19,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The estimate from `observations`, of which there must be at least one.
+    /// The estimate from `observations`.
     ///
     /// # Panics
     /// If `observations` is empty.
@@ -40,7 +40,7 @@ impl Estimate {
         }
     }
 
-    /// The ratio of two sums over independent observations, each of a part and its whole, with its
+    /// The ratio of two sums over independent observations, each a part and its whole, with its
     /// interval by linearisation (Cochran, Sampling Techniques, 1977, section 2.11); `None` if the
     /// wholes are zero.
     pub fn of_ratio(observations: &[(f64, f64)]) -> Option<Estimate> {
@@ -62,8 +62,8 @@ impl Estimate {
         })
     }
 
-    /// The mean and half the width of any interval, multiplied by `times`, with this many decimal
-    /// places.
+    /// The mean and, if there is an interval, its half-width, multiplied by `times`, with this many
+    /// decimal places.
     pub(crate) fn shown(&self, times: f64, digits: usize) -> String {
         let half = self.half_width().map_or(String::new(), |half| {
             format!(" ± {:.digits$}", half * times)

@@ -21,7 +21,7 @@ pub(crate) fn teams_of(game: &Path, files: &Arc<Files>) -> Result<Vec<String>, P
 }
 
 /// Checks that a game has no real boats, which cannot take part in experiments; otherwise reports a
-/// problem of `file`.
+/// problem in `file`.
 pub(crate) fn load_game(
     game: &Path,
     overrides: &Overrides,

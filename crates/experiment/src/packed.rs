@@ -61,8 +61,8 @@ impl Packed {
         }
     }
 
-    /// The plan that `plan` creates from the checked file and the packed files; `digest` identifies
-    /// it.
+    /// The plan that `plan` creates from the checked file and the packed files; `digest` computes
+    /// its digest.
     ///
     /// # Errors
     /// [`UnpackError`] if it is damaged or was packed by a different version of Squall.

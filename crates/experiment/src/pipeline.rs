@@ -46,7 +46,7 @@ impl Game {
     }
 }
 
-/// Whether either flag asks to stop.
+/// Two flags, either of which stops the games.
 #[derive(Clone, Copy)]
 pub(crate) struct Stop<'a>([&'a AtomicBool; 2]);
 

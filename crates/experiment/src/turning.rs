@@ -1,5 +1,5 @@
 //! Turning points: how the chance of winning changed during a recorded game, and how much each boat
-//! contributed, estimated from futures of many moments.
+//! contributed, estimated from futures that start at many moments.
 
 use crate::Estimate;
 use crate::pipeline::{Game, play_in_order};
@@ -39,7 +39,7 @@ pub struct Plan {
     pub baseline: Strategy,
 }
 
-/// The development of a recorded game.
+/// How the chances of winning changed in a recorded game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// The teams. Chances are the first team's; a draw counts half.
@@ -75,7 +75,7 @@ pub struct TurningPoint {
     pub chance: [f64; 2],
     /// The difference of the chances, with its 95 % interval.
     pub change: Estimate,
-    /// The events of that time.
+    /// The events between these times.
     pub events: Vec<EventOutcome>,
     /// What the boats involved in the events were doing, or else all boats.
     pub decisions: Vec<BoatDecision>,
@@ -337,7 +337,7 @@ fn value(winner: Option<usize>) -> f64 {
 }
 
 /// The share of wins. The interval adds two wins and two losses (Agresti and Coull, The American
-/// Statistician 52, 1998): a few futures that agree give no certainty.
+/// Statistician 52, 1998), so that a few equal results do not give certainty.
 fn share(values: &[f64]) -> Estimate {
     let [wins, count] = [values.iter().sum::<f64>(), values.len() as f64];
     let [centre, error] = moved(wins, count, 2.0);

@@ -26,7 +26,7 @@ pub struct Past {
     pub until: SimTime,
 }
 
-/// What differs from the recorded game after the moment.
+/// The changes to the recorded game after the moment.
 #[derive(Clone, Debug, Default)]
 pub struct Changes {
     /// Boats that continue with other minds, and the strategies that these follow.
@@ -102,8 +102,8 @@ impl Moment {
         })
     }
 
-    /// Plays the past. All minds see the pictures that they saw. Stops early when `watch`, which
-    /// sees contest and minds before every decision, returns `false`.
+    /// Plays the past. All minds see the same pictures as in the recorded game. Stops early when
+    /// `watch`, which sees contest and minds before every decision, returns `false`.
     pub(crate) fn of(
         past: &Past,
         mut watch: impl FnMut(&mut Contest, &MindRunner) -> bool,
@@ -123,7 +123,7 @@ impl Moment {
         Ok(Moment { contest, runner })
     }
 
-    /// The same moment, with all later random numbers drawn with `seed`.
+    /// This moment, with all later random numbers drawn with `seed`.
     pub(crate) fn reseeded(&self, seed: u64) -> Result<Moment, String> {
         let contest = self.contest.reseeded(seed);
         Ok(Moment {
@@ -162,7 +162,8 @@ fn fork(runner: &MindRunner) -> Result<MindRunner, String> {
 
 /// Plays the past and one of its futures, with random numbers drawn with `seed`. Stops when
 /// `watch`, which sees the contest before every decision and at the end, returns `false`. Returns
-/// the contest. Its scenario has the seed, so that a recording of it replays, except in another sea.
+/// the contest. Its scenario has the seed, so that a recording of it can be replayed unless the sea
+/// was changed.
 ///
 /// # Errors
 /// If the game cannot start.
@@ -181,8 +182,8 @@ pub fn play(
     moment.end(changes, watch)
 }
 
-/// Plays futures numbered from 0: each as recorded and with the changes, both with the same random
-/// numbers. Passes them to `take` in order.
+/// Plays futures numbered from 0: each once as recorded and once with the changes, both with the
+/// same random numbers. Passes them to `take` in order.
 ///
 /// # Errors
 /// The error of `take`, which ends the games, or the reason why a game cannot start.

@@ -1,5 +1,5 @@
-//! Tournaments: reproducible on any number of threads, fair to both sides, and with honest
-//! intervals.
+//! Tournaments: reproducible on any number of threads, fair to both sides, and with valid
+//! confidence intervals.
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 use experiment::Game;
@@ -137,7 +137,7 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
             "{of:?}"
         );
     }
-    // The attacker never loses to the idle entry; as the second team, it finds it in the way.
+    // The attacker never loses to the idle entry, which blocks it when it is the second team.
     let report = Report::new(&plan, &records);
     let names: Vec<&str> = report.entries.iter().map(|row| row.name.as_str()).collect();
     assert_eq!(
@@ -195,8 +195,8 @@ fn record(seed: u64, sides: [usize; 2], score: [u32; 2]) -> Record {
 fn the_two_games_of_a_seed_are_one_observation() {
     const ROUNDING: f64 = 1e-6;
     let plan = Plan::new(&tournament("attack_1v1", 10, &["pav01", "idle"])).unwrap();
-    // The first entry has 2 and 4, then 5 and 5, then 6 and 8: 3, 5, 7, 5 and 5 per seed. Mean 5,
-    // variance 2.
+    // The first entry scores 2 and 4, then 5 and 5, then 6 and 8, and so on: 3, 5, 7, 5 and 5 per
+    // seed, with mean 5 and variance 2.
     let records = [
         record(7, [0, 1], [2, 3]),
         record(7, [1, 0], [1, 4]),
@@ -360,7 +360,7 @@ fn equal_entries_are_equal_to_the_last_digit() {
     };
     let plan = Plan::new(&tournament).unwrap();
     let records = records(&plan, 2);
-    // Wind and waves favour a side, so there is something to cancel.
+    // Wind and waves favour a side, so there is an advantage to cancel out.
     let is_drawn = |record: &Record| {
         record
             .result

@@ -19,7 +19,7 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 const CPU_MAX: Duration = Duration::from_secs(5);
 /// Wall-clock limit of a check, for busy machines.
 const HUNG: Duration = Duration::from_secs(120);
-/// Size of the length field before the input in that file: 64 bits, little-endian.
+/// Size of the length field before the input in the file `current`: 64 bits, little-endian.
 const LENGTH: u64 = 8;
 
 /// Checks an input, including the memory and CPU time that the check takes.

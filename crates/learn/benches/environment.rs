@@ -10,10 +10,10 @@ use primitives::stream::Stream;
 use std::path::Path;
 
 // On one core, with all four boats observed at every decision, game decisions per second: 192,000
-// in calm water, 75,000 with sea and sensors, 26,000 with these against strategy 4. A new game
-// takes 0.03 ms in calm water and 0.41 ms with a sea, including one step. More than half of that
-// time goes into the sea's tables for each boat; a quarter into rechecking the scenario with the
-// drawn numbers.
+// in calm water, 75,000 with sea and sensors, 26,000 with both against strategy 4. A new game takes
+// 0.03 ms in calm water and 0.41 ms with a sea, including one step. More than half of that time
+// goes into the sea's tables for each boat; a quarter into rechecking the scenario with the drawn
+// numbers.
 const GAMES: usize = 64;
 
 fn setup(game: &str, opponent: Player) -> Setup {

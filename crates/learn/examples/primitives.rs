@@ -43,7 +43,7 @@ impl Actor {
 
 #[derive(Default)]
 struct Played {
-    /// Mean sum per boat and episode.
+    /// Mean total reward per boat and episode.
     reward: f64,
     time_s: f64,
     /// By team.

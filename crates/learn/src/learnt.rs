@@ -3,8 +3,8 @@
 /// Averages over the samples of an update. `None` if the algorithm has no such value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Learnt {
-    /// The policy's loss. For TD3, the negative value of its actions according to the critic, in
-    /// scaled rewards.
+    /// The policy's loss. For TD3, the negative mean value of its actions according to the critic,
+    /// in scaled rewards.
     pub policy_loss: Option<f32>,
     /// Half the mean squared error for PPO, in standard deviations of returns, and for TD3, in
     /// scaled rewards. For double DQN, the mean Huber loss in scaled rewards.

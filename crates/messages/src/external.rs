@@ -224,7 +224,7 @@ impl GatewayCommand {
         GatewayCommand::Boat { name, command }
     }
 
-    /// Whether it only queries a boat's status.
+    /// Whether the command only queries a boat's status.
     pub fn is_status(&self) -> bool {
         matches!(self, GatewayCommand::Boat { command, .. } if *command == OperatorCommand::Status)
     }
@@ -312,8 +312,8 @@ pub struct GatewayStatus {
     pub would_send: Option<String>,
     /// All counters, by name.
     pub counts: Vec<(String, u64)>,
-    /// Median and 99th percentile of two latencies in µs: from sentence in to topic out, and from
-    /// order in to sentence out. Missing until measured.
+    /// Median and 99th percentile of two latencies in µs: from incoming sentence to published
+    /// topic, and from incoming order to outgoing sentence. Missing until measured.
     pub latency_us: [Option<[f64; 2]>; 2],
 }
 

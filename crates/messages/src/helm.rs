@@ -43,7 +43,7 @@ pub struct HelmReport {
     pub behaviours: Vec<BehaviourReport>,
     /// The helm's variables.
     pub variables: Vec<VariableReport>,
-    /// The trained policies that its behaviours query.
+    /// The trained policies that the helm's behaviours query.
     #[serde(default)]
     pub policies: Vec<PolicyReport>,
     /// The objective functions of the decision.
@@ -80,13 +80,13 @@ impl HelmReport {
 /// A behaviour at one decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BehaviourReport {
-    /// Its name.
+    /// The behaviour's name.
     pub name: String,
-    /// Its kind.
+    /// The behaviour's kind.
     pub kind: String,
-    /// Whether it runs, and whether it influences the helm.
+    /// Whether the behaviour runs, and whether it influences the helm.
     pub run_state: RunState,
-    /// Its current weight; 0 unless it runs.
+    /// Current weight; 0 unless the behaviour runs.
     pub weight: f64,
 }
 
@@ -94,13 +94,13 @@ pub struct BehaviourReport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunState {
-    /// Its conditions prevent it from running.
+    /// The behaviour's conditions prevent it from running.
     Idle,
-    /// It runs but produces no objective function.
+    /// The behaviour runs but produces no objective function.
     Running,
-    /// It runs and influences the helm.
+    /// The behaviour runs and influences the helm.
     Active,
-    /// It has completed.
+    /// The behaviour has completed.
     Complete,
 }
 
@@ -109,20 +109,20 @@ pub enum RunState {
 pub struct PolicyReport {
     /// The behaviour that queries it.
     pub behaviour: String,
-    /// Its model file.
+    /// The policy's model file.
     pub model: String,
     /// The proposed course, compass degrees; `None` without a proposal.
     pub course_deg: Option<f64>,
     /// The proposed speed, m/s.
     pub speed_m_s: Option<f64>,
-    /// The chosen option, if it chooses among options.
+    /// The chosen option, if the policy chooses among options.
     #[serde(default)]
     pub option: Option<String>,
-    /// Why it makes no proposal, if so.
+    /// Why the policy makes no proposal, if it makes none.
     pub fault: Option<String>,
     /// Probability of each discrete action; empty for continuous actions.
     pub probabilities: Vec<f32>,
-    /// Its inputs at the last decision, in the order of its observation space.
+    /// The policy's inputs at the last decision, in the order of its observation space.
     pub observed: Vec<f32>,
 }
 
@@ -168,9 +168,9 @@ pub struct PolicyWords {
 /// A variable and its value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariableReport {
-    /// Its name.
+    /// The variable's name.
     pub name: String,
-    /// Its value.
+    /// The variable's value.
     pub value: String,
 }
 
@@ -181,11 +181,11 @@ pub struct FunctionReport {
     pub behaviour: String,
     /// The contact concerned.
     pub contact: Option<VehicleId>,
-    /// Its weight.
+    /// The function's weight.
     pub weight: f64,
-    /// Its utility at the decision, 0 to 100; `None` until evaluated.
+    /// The function's utility at the decision, 0 to 100; `None` until evaluated.
     pub utility: Option<f32>,
-    /// Its utilities, one row of speeds per course; empty unless requested.
+    /// The function's utilities, one row of speeds per course; empty unless requested.
     pub utilities: Vec<f32>,
 }
 

@@ -32,7 +32,7 @@ pub enum Input {
     Reported {
         /// The boat.
         vehicle: VehicleId,
-        /// Its navigation.
+        /// The boat's navigation.
         nav: Nav,
         /// Time of the fix.
         fix_at: SimTime,

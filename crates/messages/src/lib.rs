@@ -67,7 +67,7 @@ pub struct SeaView {
 /// The true state of one boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct VehicleTruth {
-    /// Its position and motion over the ground.
+    /// The boat's position and motion over the ground.
     pub nav: Nav,
     /// Heave due to waves, m.
     pub heave_m: f64,
@@ -79,19 +79,19 @@ pub struct VehicleTruth {
     pub port_newton: f64,
     /// Thrust of the starboard thruster, N.
     pub starboard_newton: f64,
-    /// Whether it is tagged.
+    /// Whether the boat is tagged.
     pub tagged: bool,
-    /// The flag it carries, or -1.
+    /// The flag that the boat carries, or -1.
     pub carrying: i16,
-    /// Whether it is out of action by power play.
+    /// Whether the boat is out of action because of power play.
     pub disabled: bool,
-    /// Whether it is outside the field.
+    /// Whether the boat is outside the field.
     pub outside: bool,
-    /// Whether its agent is lost.
+    /// Whether the agent of the boat is lost.
     pub agent_lost: bool,
-    /// Whether its state became non-finite.
+    /// Whether the state of the boat became non-finite.
     pub quarantined: bool,
-    /// Whether it is a real boat whose last report is too old.
+    /// Whether the boat is a real one whose last report is too old.
     pub nav_lost: bool,
 }
 
@@ -218,7 +218,7 @@ pub struct Word {
     pub vehicle: VehicleId,
     /// The variable: a hash of its name and its possible values.
     pub key: u64,
-    /// Its value: booleans are 0 and 1, strings are indices from 0.
+    /// The value: booleans are 0 and 1, strings are indices from 0.
     pub value: f64,
 }
 
@@ -308,8 +308,8 @@ pub enum Control {
     /// In a paused game, plays one decision.
     Step,
     /// Limits the speed to this many simulated seconds per second; `None` removes the limit. A
-    /// lockstep game plays no faster than that, a clocked game exactly that fast. A game with real
-    /// boats keeps its pace.
+    /// lockstep game plays no faster than that, a real-time game at exactly that speed. A game with
+    /// real boats keeps its pace.
     Speed(Option<f64>),
     /// Makes all boats hold while the game continues.
     Halt,

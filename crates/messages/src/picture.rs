@@ -103,32 +103,32 @@ pub struct Imu {
 /// One of the team's own boats.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OwnBoat {
-    /// Its vehicle index.
+    /// Vehicle index.
     pub vehicle: VehicleId,
-    /// Navigation as measured by its sensors.
+    /// Navigation as measured by the boat's sensors.
     pub nav: Nav,
     /// Time of the last satellite fix used, ns.
     pub fix_ns: SimTime,
     /// Gyro and accelerometers.
     pub imu: Imu,
-    /// Whether it is tagged.
+    /// Whether the boat is tagged.
     pub tagged: bool,
-    /// The flag it carries, or -1.
+    /// The flag that the boat carries, or -1.
     pub carrying: i16,
-    /// Whether it is out of action by power play.
+    /// Whether the boat is out of action because of power play.
     pub disabled: bool,
-    /// Whether it is outside the field.
+    /// Whether the boat is outside the field.
     pub outside: bool,
-    /// Time from which it may tag again, ns.
+    /// Time from which the boat may tag again, ns.
     pub tag_ready_ns: SimTime,
 }
 
 /// A boat of an opposing team, as known to this one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
-    /// Its vehicle index.
+    /// Vehicle index.
     pub vehicle: VehicleId,
-    /// Its team.
+    /// The boat's team.
     pub team: TeamId,
     /// Time of the sighting, ns.
     pub seen_ns: SimTime,
@@ -142,16 +142,16 @@ pub struct Contact {
     pub velocity_north_m_s: f64,
     /// Velocity over the ground towards east, m/s.
     pub velocity_east_m_s: f64,
-    /// Whether it is tagged.
+    /// Whether the boat is tagged.
     pub tagged: bool,
-    /// The flag it carries, or -1.
+    /// The flag that the boat carries, or -1.
     pub carrying: i16,
 }
 
 /// One flag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FlagView {
-    /// The vehicle that carries it, or -1 if it is at home.
+    /// The vehicle that carries the flag, or -1 if the flag is at home.
     pub carrier: i32,
 }
 
@@ -245,7 +245,7 @@ impl OwnBoat {
         }
     }
 
-    /// The flag it carries.
+    /// The flag that the boat carries.
     pub fn carried_flag(&self) -> Option<FlagId> {
         u8::try_from(self.carrying).ok().map(FlagId)
     }

@@ -56,7 +56,7 @@ pub struct RecordingState {
     pub bytes: u64,
     /// Messages dropped because the disk was too slow.
     pub dropped: u64,
-    /// Why writing stopped, if so.
+    /// Why writing stopped, if it did.
     pub failed: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Messages match their `.msg` files, survive a round trip, and are rejected when damaged.
+//! Messages match their `.msg` files, survive a round trip, and are rejected when corrupted.
 
 use messages::external::{ExternalOrder, LinkBytes, NavReport};
 use messages::input::Inputs;

@@ -42,13 +42,13 @@ struct Desired {
 /// The newest requests of the applications of one boat.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BackSeat {
-    /// By position in [`READS`].
+    /// The requests, in the order of [`READS`].
     desired: [Option<Desired>; 6],
     /// `DEPLOY` is false: the boat must not move.
     is_undeployed: bool,
     /// A person has overridden the helm.
     is_overridden: bool,
-    /// Why the helm has stopped the boat, if so.
+    /// Why the helm has stopped the boat, if it has.
     all_stop: Option<String>,
     /// Meaningless requests.
     pub(crate) refusals: Refusals,

@@ -1,5 +1,5 @@
-//! A boat as a MOOS community: its mind publishes each picture as variables, and orders as
-//! requested by the community's applications.
+//! A boat as a MOOS community: its mind publishes each picture as variables, and gives the orders
+//! that the community's applications request.
 
 use crate::back_seat::{self, BackSeat};
 use crate::clock::MoosClock;
@@ -32,7 +32,7 @@ pub fn reads() -> BTreeSet<String> {
 
 /// Maximum number of drawings waiting for the shoreside.
 const DRAWINGS_MAX: usize = 256;
-/// Silence after which a helm counts as restarted, s.
+/// Silence (s) after which a helm counts as restarted.
 const HELM_SILENCE_S: f64 = 3.0;
 
 /// The initial values of a community: a game begins without an operator pressing a button.
@@ -105,7 +105,8 @@ impl BoatMind {
             if msg.key == "IVPHELM_STATE" {
                 let before = self.helm_at.replace(now);
                 if before.is_none_or(|before| (now - before).as_s() > HELM_SILENCE_S) {
-                    // A mission's initial values of game variables do not come from the game.
+                    // Publish everything again: a mission's own initial values may have replaced
+                    // those of the game.
                     community.forget_all();
                 }
             } else if DRAWINGS.contains(&msg.key.as_str()) {
@@ -137,7 +138,7 @@ impl BoatMind {
             ("NAV_LAT", at.lat_deg),
             ("NAV_LONG", at.lon_deg),
             ("NAV_HEADING", heading_deg),
-            // Counter-clockwise, rad, as published by simulators of MOOS.
+            // Counter-clockwise, rad, as published by MOOS simulators.
             ("NAV_YAW", -nav.psi_rad),
             ("NAV_SPEED", nav.speed_m_s()),
             ("NAV_HEADING_OVER_GROUND", compass_deg_from_rad(course_rad)),
@@ -284,7 +285,7 @@ pub(crate) fn mode_of(is_tagged: bool, carrying: i16) -> &'static str {
     }
 }
 
-/// A contact's motion; its whole velocity is taken as ahead.
+/// A contact's motion; its whole velocity is taken as surge.
 fn nav_of(contact: &Contact) -> Nav {
     Nav {
         north_m: contact.north_m,
@@ -308,7 +309,7 @@ mod tests {
     const MOOS: MoosClock = MoosClock { warp: 1.0 };
 
     /// A picture of the first boat, which is tagged, and an opponent in its zone, sighted half a
-    /// second before.
+    /// second earlier.
     fn picture(scenario: &Scenario, s: f64) -> Picture {
         let stamp = Stamp {
             valid_ns: SimTime::from_s(s),

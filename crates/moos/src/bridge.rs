@@ -22,7 +22,7 @@ use thiserror::Error;
 
 /// Interval of notes about dropped messages.
 const REPORT: Duration = Duration::from_secs(1);
-/// Time that applications without a helm have to connect before the boats join.
+/// Maximum time to wait for a boat's helm once any application has connected.
 const HELM_MAX: Duration = Duration::from_secs(5);
 /// Time for applications to read the end of the game before their database closes.
 const LINGER: Duration = Duration::from_millis(500);
@@ -37,12 +37,12 @@ pub struct Settings {
     pub wait: Duration,
     /// Time without a picture after which the sim counts as lost.
     pub silence: Duration,
-    /// Set from outside to leave the game.
+    /// Set by the caller to leave the game.
     pub stop: Arc<AtomicBool>,
     /// Boats by name, with the addresses of their databases; without an address, the next port is
     /// used.
     pub boats: Vec<(String, Option<Address>)>,
-    /// A team whose boats are all connected.
+    /// The team whose boats are all to be connected.
     pub team: Option<String>,
     /// The first port of boats without an address.
     pub first_port: u16,

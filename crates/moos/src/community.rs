@@ -60,9 +60,9 @@ enum Link {
 
 /// A community, and the last values that the bridge has published there.
 pub struct Community {
-    /// Its name.
+    /// The community's name.
     pub name: String,
-    /// The location of its database, in words.
+    /// The location of the community's database, as text.
     pub place: String,
     link: Link,
     moos: MoosClock,
@@ -151,7 +151,7 @@ impl Community {
     }
 
     /// Publishes a value if it differs from the last one published by this function. Returns the
-    /// message, if it did.
+    /// message if it was published.
     pub fn publish_change(&mut self, key: &str, value: Value) -> Option<Msg> {
         if self.published.get(key) == Some(&value) {
             return None;

@@ -26,7 +26,7 @@ const STORED_MAX: usize = 64 << 20;
 pub const BRIDGE: &str = "squall";
 /// Interval of the database's own variables, s.
 const STATUS_S: f64 = 1.0;
-/// Clock difference above which a client is reported, s.
+/// Clock difference (s) above which a client is reported.
 const SKEW_MAX_S: f64 = 60.0;
 
 /// Counts of drops, by reason.
@@ -36,7 +36,7 @@ pub struct Dropped {
     pub wrong_type: u64,
     /// Values, variables or subscriptions beyond a limit.
     pub over_limit: u64,
-    /// Mail of clients that did not read it.
+    /// Mail for clients that did not read it.
     pub unread: u64,
     /// Packets and datagrams that could not be decoded.
     pub malformed: u64,
@@ -100,7 +100,7 @@ struct Client {
     mail: Arc<Watched<Mail>>,
     subscriptions: BTreeMap<String, Subscription>,
     wildcards: Vec<Wildcard>,
-    /// The subscriptions, among these patterns, that apply to variables received so far.
+    /// Subscriptions derived from the patterns, for the variables received so far.
     matched: BTreeMap<String, Subscription>,
 }
 
@@ -163,8 +163,7 @@ impl Database {
             self.dropped.refused += 1;
             return Err(reason);
         }
-        // An upper bound of the difference of the clocks, since it includes the packet's transit
-        // time.
+        // An upper bound on the clock difference, since it includes the packet's transit time.
         let skew_s = if hello.time_s.is_finite() {
             now_s - hello.time_s
         } else {

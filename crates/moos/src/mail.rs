@@ -25,7 +25,8 @@ impl Mail {
         self.bytes += message.len();
         self.messages.push_back(Arc::clone(message));
         let mut displaced = 0;
-        // Drops half of the mail, as MOOS clients do with unsent mail, so that this rarely happens.
+        // Drop half of the mail at once, as MOOS clients do with unsent mail, so that this rarely
+        // happens.
         if self.bytes > MAIL_MAX {
             while self.bytes > MAIL_MAX / 2 {
                 let Some(old) = self.messages.pop_front() else {

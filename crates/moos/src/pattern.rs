@@ -23,7 +23,7 @@ pub(crate) fn patterns(msg: &Msg) -> [String; 3] {
     ]
 }
 
-/// Whether a pattern matches: `*` stands for any characters, `?` for one.
+/// Whether a pattern matches: `*` matches any characters, `?` one.
 pub(crate) fn matches(pattern: &str, text: &str) -> bool {
     let (pattern, text) = (pattern.as_bytes(), text.as_bytes());
     let (mut p, mut t) = (0, 0);

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// Time without a complete packet after which a client is dropped, as by MOOSDB.
+/// Time without a complete packet after which a client is dropped, as in MOOSDB.
 const SILENCE: Duration = Duration::from_secs(5);
 /// Time without accepting a byte after which a client is dropped.
 const WRITE_MAX: Duration = Duration::from_secs(2);
@@ -215,7 +215,7 @@ fn start_writer(
                 return;
             }
             if packet.is_some_and(|packet| stream.write_all(&packet).is_err()) {
-                // Unless the reading thread has already counted it.
+                // Do not count the client if the reading thread has already done so.
                 let is_counted = mail.visit(|mail| mail.is_closed);
                 database.visit(|database| database.dropped.stalled += u64::from(!is_counted));
                 // This ends the reading thread too.
@@ -263,7 +263,7 @@ impl<'a> Packets<'a> {
         let start = clock::now();
         while length < greeting.len() {
             length += self.read_some(&mut greeting[length..])?;
-            // Single bytes must not extend the time.
+            // A trickle of single bytes must not extend the timeout.
             if clock::since(start) > SILENCE {
                 return None;
             }
@@ -466,7 +466,7 @@ mod tests {
         other.send(&[Msg::number(Kind::REGISTER, "COUNT", 0.0, MOOS.now_s())]);
         let start = clock::now();
         let mut count = 0.0;
-        // Until the unresponsive client is dropped, each value reaches the other one.
+        // Until the unresponsive client is dropped, each value reaches the other client.
         wait_for(start, "the deaf client is dropped", || {
             count += 1.0;
             server.visit(|database, now_s| {

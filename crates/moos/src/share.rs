@@ -4,7 +4,7 @@ use crate::wire::{self, Msg};
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 
-/// Maximum length of a datagram of pShare, bytes.
+/// Maximum length of a pShare datagram, bytes.
 const DATAGRAM_MAX: usize = 48 << 10;
 /// Maximum number of datagrams per read.
 const READ_MAX: usize = 256;

@@ -22,7 +22,7 @@ use std::time::Duration;
 const REDRAW_S: f64 = 5.0;
 /// Interval at which the shoreside reads commands while no frame arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// Distance at which a flag is drawn behind its carrier, m.
+/// Distance (m) at which a flag is drawn behind its carrier.
 const ASTERN_M: f64 = 3.0;
 /// The variables that people at the shoreside set for all boats (`_ALL`) or for one.
 const COMMANDS: [&str; 5] = [
@@ -44,7 +44,7 @@ pub(crate) struct Shoreside<'a> {
     pub(crate) share: Option<Share>,
     pub(crate) boats: Boats,
     pub(crate) moos: MoosClock,
-    /// When drawings are due again, MOOS time, s.
+    /// When drawings are due again, MOOS time in s.
     pub(crate) redraw_s: f64,
 }
 

@@ -336,7 +336,7 @@ impl Framer {
     }
 }
 
-/// Variables with drawings of helms for viewers.
+/// Variables in which helms publish drawings for viewers.
 pub(crate) const DRAWINGS: [&str; 6] = [
     "VIEW_POINT",
     "VIEW_SEGLIST",
@@ -350,7 +350,7 @@ const HEARD_MAX: usize = 1024;
 /// Maximum length of a drawing for the shoreside, bytes.
 const DRAWING_MAX: usize = 8 << 10;
 
-/// Stores the newest value of each variable, but all drawings, because one variable contains many
+/// Stores the newest value of each variable, but every drawing, because one variable carries many
 /// of them.
 pub(crate) fn keep(heard: &mut BTreeMap<String, Msg>, msg: Msg) {
     let is_drawing = DRAWINGS.contains(&msg.key.as_str());

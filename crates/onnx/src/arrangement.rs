@@ -224,7 +224,7 @@ pub(super) fn concat(planner: &mut Planner, node: &Node) -> Result<Value, Networ
     Ok(Value::Computed(output))
 }
 
-/// All inputs of a node, which must be lists of constant integers, joined to one list: a shape.
+/// All inputs of a node, which must be lists of constant integers, joined into one list: a shape.
 fn joined_integers(planner: &mut Planner, node: &Node) -> Result<Option<Tensor>, NetworkError> {
     let mut joined = vec![];
     for index in 0..node.proto.input.len() {

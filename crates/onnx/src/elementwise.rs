@@ -145,7 +145,7 @@ pub(super) enum Operation {
     Least,
     Greatest,
     Power,
-    /// The left number, times the right one if it is negative.
+    /// The left number, multiplied by the right one if the left is negative.
     Slope,
 }
 
@@ -204,7 +204,7 @@ fn power(base: f32, exponent: f32) -> f32 {
     }
 }
 
-/// Plans a function of single numbers.
+/// Plans an elementwise function of one input.
 pub(super) fn function(
     planner: &mut Planner,
     node: &Node,
@@ -241,7 +241,7 @@ pub(super) fn clip(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
     function(planner, node, Function::Clip { min, max })
 }
 
-/// Plans a function of pairs of numbers, from left to right if there are more than two inputs.
+/// Plans an elementwise function of two inputs; further inputs are combined from left to right.
 pub(super) fn binary(
     planner: &mut Planner,
     node: &Node,

@@ -1,4 +1,4 @@
-//! Errors of reading and writing networks.
+//! Errors in reading and writing networks.
 
 use thiserror::Error;
 

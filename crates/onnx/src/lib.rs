@@ -85,7 +85,7 @@ impl Network {
         &self.plan.metadata
     }
 
-    /// Deviations of the file from what it computes, such as the declared shape of an output.
+    /// Differences between the file's declarations and what it computes, such as an output's shape.
     pub fn warnings(&self) -> &[String] {
         &self.plan.warnings
     }

@@ -103,7 +103,7 @@ impl Perceptron {
             metadata_props: self.metadata.iter().map(entry).collect(),
         };
         let bytes = model.encode_to_vec();
-        // All checks of files are in one place.
+        // All checks on files are in [`Network::read`].
         Network::read(&bytes)?;
         Ok(bytes)
     }

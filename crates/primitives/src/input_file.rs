@@ -1,5 +1,5 @@
-//! Reads a user's input file up to a size limit. Only regular files: a pipe may never end, and
-//! devices contain no data.
+//! Reads a user's input file up to a size limit. Only regular files are allowed: a pipe may never
+//! end, and devices contain no data.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read};
@@ -73,7 +73,7 @@ pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
 /// "Unicode text".
 ///
 /// # Errors
-/// If UTF-16 content is damaged.
+/// If UTF-16 content is invalid.
 pub fn utf_8(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
     let order: fn([u8; 2]) -> u16 = match bytes.get(..2) {
         Some(b"\xff\xfe") => u16::from_le_bytes,

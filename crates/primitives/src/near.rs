@@ -106,7 +106,8 @@ const ROW: u64 = 1 << 40;
 /// A vehicle and its cell as one number: 24 bits for the row, 24 for the column, 16 for the
 /// vehicle.
 fn key(at: Ned, reach_m: f64, vehicle: u16) -> u64 {
-    // Slightly wider than the reach, so that rounding never puts near boats two cells apart.
+    // Cells are slightly wider than the reach, so that rounding never puts near boats two cells
+    // apart.
     let cell_m = reach_m * 1.000_001;
     // Boats millions of cells away share the outermost cell, which is searched like any other.
     let cell = |metres: f64| ((metres / cell_m).floor().clamp(-8e6, 8e6) + 8_388_608.0) as u64;

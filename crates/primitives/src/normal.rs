@@ -32,7 +32,7 @@ static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
 
 #[derive(Clone, Copy)]
 struct Layer {
-    /// Its right-hand edge.
+    /// The layer's right-hand edge.
     edge: f64,
     /// Height of the bell curve at the edge, where the layer begins.
     bell: f64,

@@ -16,7 +16,7 @@ pub fn text(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// The same for a string that may contain colours (`ESC [ numbers m`).
+/// Like [`text`], for a string that may contain colours (`ESC [ numbers m`).
 pub fn coloured(text: &str) -> String {
     let mut parts = text.split('\x1b');
     let mut shown = self::text(parts.next().unwrap_or_default()).into_owned();
@@ -36,12 +36,12 @@ pub fn line(text: &str) -> String {
     shortened(&spelt(text, steers)).into_owned()
 }
 
-/// A message of one or more lines, each treated as above.
+/// A message of one or more lines, each escaped as by [`line`].
 pub fn message(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The same for a message that may contain colours.
+/// Like [`message`], for a message that may contain colours.
 pub fn coloured_message(text: &str) -> String {
     text.split('\n')
         .map(|line| shortened(&coloured(line)).into_owned())
@@ -70,7 +70,7 @@ fn spelt(text: &str, is_spelt: impl Fn(char) -> bool) -> Cow<'_, str> {
 }
 
 fn shortened(text: &str) -> Cow<'_, str> {
-    // The byte count is known, and at least the character count.
+    // The byte count is already known, and the character count is never larger.
     let surplus = if text.len() > LINE_MAX {
         text.chars().count().saturating_sub(LINE_MAX)
     } else {

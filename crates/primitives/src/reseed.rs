@@ -84,9 +84,9 @@ impl TimedNoise {
     /// The noise for draws at `now`.
     #[inline]
     pub fn at(&self, now: SimTime) -> Noise {
-        // A new key takes effect at a certain time, instead of a restored snapshot. The past is
+        // A new key takes effect at a certain time, and no snapshot is restored: the past is
         // replayed, which at most doubles the time of a branch. In return, a branch is a game like
-        // any other, with a seed and a key on the command line, minds included.
+        // any other, minds included, given by a seed and a key on the command line.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
         self.later
             .iter()

@@ -97,15 +97,15 @@ impl Noise {
         unit(self.bits(count))
     }
 
-    /// Two independent normally distributed numbers with mean 0 and variance 1. Uses two units:
-    /// those of twice the count and of the next number.
+    /// Two independent normally distributed numbers with mean 0 and variance 1. Uses two uniform
+    /// numbers: those at twice the count and at the number after that.
     #[inline]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {
         (self.normal(2 * count), self.normal(2 * count + 1))
     }
 
-    /// A normally distributed number with mean 0 and variance 1, instead of a unit. Further bits,
-    /// if needed, are derived from the first.
+    /// A normally distributed number with mean 0 and variance 1, in place of a uniform number.
+    /// Further bits, if needed, are derived from the first.
     pub fn normal(&self, count: u64) -> f64 {
         let first = self.bits(count);
         normal(|asked| {

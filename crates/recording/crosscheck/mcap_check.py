@@ -14,7 +14,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 FACTORIES = [DecoderFactory()]
-# JSON is carried as this.
+# The message type that carries JSON.
 TEXT = "std_msgs/msg/String"
 
 

@@ -1,5 +1,6 @@
 //! An open recording of any kind: its header and its messages, even if the file is truncated.
 
+use crate::compressed;
 use crate::index::{Index, IndexEntry};
 use crate::json_string;
 use crate::records::{Extent, Record, for_each_record};
@@ -25,7 +26,7 @@ pub enum RecordingError {
         /// The system's error.
         reason: std::io::Error,
     },
-    /// A MOOS log is invalid; with file and line.
+    /// An invalid MOOS log, with file and line.
     #[error("{0}")]
     Log(String),
     /// The file can no longer be read.
@@ -171,6 +172,7 @@ impl Bag {
     }
 
     fn of_source(source: Source) -> Result<Bag, RecordingError> {
+        let source = compressed::expanded(source)?;
         let mut found = Found::default();
         let Extent { is_cut, damage } = for_each_record(&source, |record, place, chunk| {
             found.take(record, &place, chunk)
@@ -194,6 +196,39 @@ impl Bag {
             channels,
             index,
         })
+    }
+
+    /// Calls `take` with the topic, schema, recording time (ns) and content of every ROS 2 message
+    /// in an MCAP file of another program, such as rosbag2.
+    ///
+    /// # Errors
+    /// [`RecordingError`] if it cannot be read or is not an MCAP file.
+    pub fn for_each_foreign_message(
+        path: &Path,
+        mut take: impl FnMut(&str, &str, u64, Vec<u8>),
+    ) -> Result<(), RecordingError> {
+        let file = |reason| RecordingError::File {
+            path: path.to_owned(),
+            reason,
+        };
+        let source = compressed::expanded(Source::open(path).map_err(file)?)?;
+        let mut found = Found::default();
+        for_each_record(&source, |record, place, chunk| {
+            found.take(record, &place, chunk)
+        })?;
+        for place in 0..found.index.count {
+            let Some(entry) = found.index.entry(&source, place) else {
+                continue;
+            };
+            let Some(channel) = found.channels.get(&entry.channel) else {
+                continue;
+            };
+            if let Some(schema) = &channel.schema {
+                let bytes = source.read(entry.from..entry.from + u64::from(entry.length))?;
+                take(&channel.topic, schema, entry.log_ns, bytes);
+            }
+        }
+        Ok(())
     }
 
     /// A fact of the header; empty if missing.

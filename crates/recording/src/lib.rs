@@ -29,10 +29,12 @@
 
 pub mod alog;
 mod bag;
+mod compressed;
 mod damaged;
 mod game_recording;
 mod index;
 mod json_string;
+pub mod logs;
 mod new_file;
 mod recorder;
 mod records;

@@ -48,6 +48,18 @@ impl NewFile {
         Ok(new)
     }
 
+    /// Writes a complete recording, and returns its path.
+    ///
+    /// # Errors
+    /// [`RecordError`] if it cannot be written.
+    pub fn fill(mut self, bytes: &[u8]) -> Result<PathBuf, RecordError> {
+        if let Some(file) = &mut self.file {
+            file.write_all(bytes)?;
+        }
+        self.file = None;
+        Ok(self.path.clone())
+    }
+
     /// Creates a file with this name in a folder; adds a number if the name is taken.
     ///
     /// # Errors

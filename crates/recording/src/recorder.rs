@@ -19,7 +19,7 @@ const FLUSH: Duration = Duration::from_secs(1);
 const GATHER: Duration = Duration::from_millis(20);
 /// Size of the write buffer, bytes.
 const BUFFER: usize = 1 << 16;
-/// Memory limit of entries waiting for the disk, bytes.
+/// Memory limit for entries waiting for the disk, bytes.
 const WAITING_BYTES: usize = 128 << 20;
 /// Maximum number of waiting entries.
 const WAITING: usize = 1 << 14;

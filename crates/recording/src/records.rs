@@ -1,7 +1,8 @@
 //! Reads the records of an MCAP file one by one, up to where it is truncated.
 //!
 //! The library's own readers treat a chunk as one unit and would lose a truncated one entirely. Our
-//! chunks are uncompressed, so their records can be read up to the truncation.
+//! chunks are uncompressed, so their records can be read up to the truncation. Compressed files are
+//! decompressed before.
 
 use crate::RecordingError;
 use crate::source::Source;
@@ -14,6 +15,8 @@ use std::ops::Range;
 const PREFIX: u64 = 9;
 /// Offset of the checksum in a chunk, after the times of the first and last message, and the size.
 const CHUNK_CRC_AT: u64 = 3 * 8;
+/// Size of the numbers at the start of a chunk, before the name of its compression.
+pub(crate) const CHUNK_NUMBERS: u64 = CHUNK_CRC_AT + 4;
 /// Size of the fields before the bytes of a message: channel, number, and two times.
 const MESSAGE_HEADER: u64 = 2 + 4 + 8 + 8;
 /// Size of everything before the bytes of a message.
@@ -32,8 +35,8 @@ pub(crate) struct Extent {
 }
 
 /// Calls `take` with every schema, channel, message and metadata record, including those in chunks.
-/// A message is passed as its header and the byte range of its content; every record with the start
-/// of its chunk, or 0. A damaged chunk is read up to the first invalid record.
+/// A message is passed as its header and the byte range of its content. The last argument is the
+/// start of the record's chunk, or 0. A damaged chunk is read up to the first invalid record.
 pub(crate) fn for_each_record(
     source: &Source,
     mut take: impl FnMut(Record<'_>, Range<u64>, u64),
@@ -91,7 +94,7 @@ fn agrees(source: &Source, checksum_at: u64, place: Range<u64>) -> Result<bool, 
 }
 
 /// Opcode and body of the record at `place`; the body may extend beyond the available bytes.
-fn record_at(
+pub(crate) fn record_at(
     source: &Source,
     place: u64,
     end: u64,
@@ -190,25 +193,14 @@ fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 
 /// The byte range of the records in a chunk, as far as available.
 fn chunk_records(source: &Source, body: &Range<u64>) -> Result<Range<u64>, RecordingError> {
-    // The checksum covers everything after the name of the compression.
-    const NUMBERS: u64 = CHUNK_CRC_AT + 4;
-    /// Longest name shown in a message.
-    const NAME_MAX: u64 = 40;
     let end = source.length;
     let name_length = source
-        .array(body.start + NUMBERS)?
+        .array(body.start + CHUNK_NUMBERS)?
         .map(|length| u64::from(u32::from_le_bytes(length)));
-    let name_at = body.start + NUMBERS + 4;
+    let name_at = body.start + CHUNK_NUMBERS + 4;
     let Some(name_length) = name_length.filter(|length| name_at + length <= end) else {
         return Ok(end..end);
     };
-    if name_length > 0 {
-        let name = source.read(name_at..name_at + name_length.min(NAME_MAX))?;
-        let name = String::from_utf8_lossy(&name);
-        return Err(RecordingError::Foreign(format!(
-            "it is compressed ({name}); Squall recordings are not"
-        )));
-    }
     let from = name_at + name_length + 8;
     let end = body.end.min(end);
     Ok(from.min(end)..end)

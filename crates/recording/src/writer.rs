@@ -217,8 +217,8 @@ impl<W: Write + Seek> Writer<W> {
             .iter()
             .map(|input| (*input).into())
             .collect();
-        // Inputs as well as their results: a game, including a field game with real boats, can then
-        // be simulated again with a different version or in a debugger.
+        // Record inputs as well as their results, so that a game, including a field game with real
+        // boats, can be simulated again with a different version or in a debugger.
         self.put_message(INPUTS, &Inputs { stamp, inputs }, stamp, utc_ns)?;
         self.put_message(FRAME, &*decision.frame, stamp, utc_ns)
     }
@@ -281,7 +281,7 @@ impl<W: Write + Seek> Writer<W> {
         let schema_id = self
             .mcap
             .add_schema(schema, "ros2msg", definition.as_bytes())?;
-        // The profile requires the offered quality of service: there was none.
+        // The profile requires this field; no quality of service was offered.
         let qos = BTreeMap::from([("offered_qos_profiles".to_owned(), "[]".to_owned())]);
         Ok(self.mcap.add_channel(schema_id, topic, "cdr", &qos)?)
     }

@@ -80,8 +80,8 @@ impl Motion {
     /// Position and orientation of `base_link` in [`MAP`].
     pub fn pose(&self) -> Pose {
         let [x, y, _] = enu(self.nav.at());
-        // Roll keeps its sign, because both frames have the same axis ahead. The pitch axis points
-        // to port instead of starboard.
+        // Roll keeps its sign, because the forward axis is the same in both frames. The pitch axis
+        // points to port instead of starboard.
         Pose {
             position: [x, y, self.heave_m],
             orientation: quaternion(self.roll_rad, -self.pitch_rad, FRAC_PI_2 - self.nav.psi_rad),

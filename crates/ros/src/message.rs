@@ -10,9 +10,9 @@ use messages::{Frame, Message, Picture, VehicleOrder};
 use primitives::SimTime;
 use serde::{Deserialize, Serialize};
 
-/// A message with a type of ROS 2.
+/// A message with a ROS 2 type.
 pub trait RosMessage {
-    /// Its full name, for example `std_msgs/msg/Header`.
+    /// The full name of the type, for example `std_msgs/msg/Header`.
     const TYPE: &'static str;
 }
 

@@ -1,14 +1,15 @@
 //! The names that `rmw_zenoh` gives to topics, services, nodes and messages: keys, liveliness
 //! tokens and attachments, as in its design document.
 //!
-//! The crate `hiroz-protocol` has these too. They amount to four formats and 33 bytes; the crate is
-//! experimental, twelve times as long, and would tie the bridge's zenoh version to its own.
+//! The crate `hiroz-protocol` implements these too. They amount to four formats and 33 bytes; the
+//! crate is experimental, twelve times as long, and would tie the bridge's zenoh version to its
+//! own.
 
 use crate::type_hash::type_hash;
 use xxhash_rust::xxh3::xxh3_128;
 
 /// The quality of service of all endpoints: reliable, volatile, the last ten messages. Empty parts
-/// stand for defaults.
+/// select the defaults.
 const QOS: &str = "::,10:,:,:,,";
 
 /// The kind of an endpoint.
@@ -27,11 +28,11 @@ pub enum Kind {
 pub struct Node {
     /// The ROS domain.
     pub domain: u32,
-    /// The identifier of its session.
+    /// The identifier of the node's session.
     pub session: String,
-    /// Its number in the session.
+    /// The node's number in the session.
     pub id: u32,
-    /// Its name. It has no namespace.
+    /// The node's name. Nodes have no namespace.
     pub name: String,
 }
 
@@ -63,8 +64,8 @@ impl Node {
         format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
     }
 
-    /// The token of one of its endpoints, whose number must be unique among the session's endpoints
-    /// and nodes.
+    /// The token of one of the node's endpoints, whose number must be unique among the session's
+    /// endpoints and nodes.
     pub fn endpoint_token(
         &self,
         endpoint: u32,

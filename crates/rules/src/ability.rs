@@ -6,24 +6,24 @@ use primitives::time::SimTime;
 /// The facts that decide whether a boat may act.
 #[derive(Clone, Copy, Debug)]
 pub struct Ability {
-    /// It is tagged.
+    /// The boat is tagged.
     pub tagged: bool,
-    /// It is out of action by power play.
+    /// The boat is out of action because of power play.
     pub disabled: bool,
-    /// It is outside the field.
+    /// The boat is outside the field.
     pub outside: bool,
-    /// The time from which it may tag.
+    /// The time from which the boat may tag.
     pub tag_ready: SimTime,
 }
 
 impl Ability {
-    /// Whether it may act on others: tag, grab, capture.
+    /// Whether the boat may act on others: tag, grab, capture.
     #[inline]
     pub fn acts(self) -> bool {
         !(self.tagged || self.disabled || self.outside)
     }
 
-    /// Whether it may tag an opponent that it can reach.
+    /// Whether the boat may tag an opponent that it can reach.
     #[inline]
     pub fn may_tag(self, now: SimTime) -> bool {
         self.acts() && now >= self.tag_ready

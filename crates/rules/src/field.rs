@@ -35,7 +35,7 @@ pub struct Plan<E = f64> {
     /// Extent from end to end, m.
     #[schemars(range(min = 10, max = 20000))]
     pub width_m: f64,
-    /// Extent across, m.
+    /// Size across the field, m.
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
     /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width /
@@ -72,7 +72,7 @@ pub enum Walls {
 pub struct Flag {
     /// The team that defends it.
     pub team: TeamId,
-    /// Its position when no boat carries it.
+    /// The flag's position when no boat carries it.
     pub home: Ned,
 }
 
@@ -216,7 +216,7 @@ impl Zone {
         }
     }
 
-    /// Whether `at` is inside or on an edge, with a tolerance of 1 nm against rounding.
+    /// Whether `at` is inside or on an edge, with a tolerance of 1e-9 m for rounding.
     #[inline]
     pub fn contains(&self, at: Ned) -> bool {
         self.edges

@@ -56,7 +56,7 @@ pub struct Rules {
     /// Maximum distance from the capture place, m; no effect with "own_side".
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub capture_radius_m: f64,
-    /// Distance of centres below which boats collide, m.
+    /// Distance between centres below which boats collide, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
     /// Contact between boats; walls and obstacles are always solid.
@@ -72,7 +72,7 @@ pub struct Rules {
     /// Where a tagged boat is untagged.
     #[schemars(extend("default" = "own_flag"))]
     pub untag_at: UntagAt,
-    /// Condition for untagging there.
+    /// Whether a boat is untagged on entering the untag place or while inside it.
     #[schemars(extend("default" = "entering"))]
     pub untag_on: UntagOn,
     /// Minimum time from a boat's successful tag to its next tag, s.
@@ -128,7 +128,7 @@ pub struct Rules {
     /// Score that ends the game; 0: none.
     #[schemars(with = "u32", range(min = 0, max = 1000000), extend("default" = 0))]
     pub win_score: Option<u32>,
-    /// End of the game, s.
+    /// Time limit of the game, s.
     #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
     #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,

@@ -85,16 +85,17 @@ impl Referee {
         let flags = is_due(look.now, self.rules.flag_look_period);
         self.switch_power_plays(standing, events);
         if tags {
-            // First, because a boat that has left is out of the taggers' reach but must still lose
-            // its flag.
+            // Check the boundary first, because a boat that has left is out of the taggers' reach
+            // but must still lose its flag.
             self.watch_boundary(standing, at, events);
         }
         if flags && self.rules.resolution == Resolution::InTurn {
             self.grab(standing, notes, look, events);
         }
         if tags {
-            // Before grabs, because a boat tagged at the flag must not grab it. With `InTurn`, as
-            // in Pyquaticus, boats listed first tag more often; that order is only for comparison.
+            // Tag before grabs, because a boat tagged at the flag must not grab it. With `InTurn`,
+            // as in Pyquaticus, boats listed first tag more often; that order is only for
+            // comparison.
             self.tag(standing, notes, look, events);
         }
         if flags && self.rules.resolution == Resolution::AtOnce {

@@ -29,30 +29,30 @@ pub struct Standing {
 pub struct VehicleStanding {
     /// Whether the boat takes part: a quarantined boat is only an obstacle.
     pub in_play: bool,
-    /// Whether it is tagged.
+    /// Whether the boat is tagged.
     pub tagged: bool,
     /// Time of its last tag.
     pub tagged_at: SimTime,
-    /// The flag it carries.
+    /// The flag that the boat carries.
     pub carrying: Option<FlagId>,
-    /// Time from which it may tag again.
+    /// Time from which the boat may tag again.
     pub tag_ready: SimTime,
-    /// Whether it is outside the field.
+    /// Whether the boat is outside the field.
     pub outside: bool,
     /// Whether the boat was at its untag place, and on the field, at the last check.
     pub at_home: bool,
     /// Whether the boat was in its own flag's keep-out circle at the last check.
     pub in_keepout: bool,
-    /// Whether it is out of action by power play.
+    /// Whether the boat is out of action because of power play.
     pub disabled: bool,
 }
 
 /// The standing of one flag.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlagStanding {
-    /// Its carrier; `None` if the flag is home.
+    /// The flag's carrier; `None` if the flag is home.
     pub carrier: Option<VehicleId>,
-    /// Time of its last grab or return.
+    /// Time of the flag's last grab or return.
     pub moved_at: SimTime,
 }
 
@@ -93,7 +93,7 @@ impl Standing {
 }
 
 impl VehicleStanding {
-    /// Whether it may act on others: tag, grab, capture.
+    /// Whether the boat may act on others: tag, grab, capture.
     #[inline]
     pub fn acts(&self) -> bool {
         self.in_play && Ability::from(self).acts()

@@ -7,8 +7,8 @@ use primitives::id::VehicleId;
 use primitives::near::Pair;
 
 impl Referee {
-    /// Tags intruders as soon as possible: automatically, or on request once the boat believes
-    /// itself within reach.
+    /// Tags intruders as soon as possible: automatically, or on request once the boat believes that
+    /// it is within reach.
     ///
     /// Each tagger claims one intruder; [`super::Resolution`] decides between several taggers of
     /// the same intruder. Only the successful tagger gets the points and the cooldown: a failed or

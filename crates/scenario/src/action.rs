@@ -22,7 +22,7 @@ pub enum ActionSpace {
     Pyquaticus,
     /// A turn and a speed.
     Continuous,
-    /// The values of a variable of a strategy.
+    /// The values of a strategy variable.
     Options,
     /// The actions of a table.
     #[serde(untagged)]
@@ -66,12 +66,12 @@ impl<'de> Deserialize<'de> for ActionSpace {
 #[derive(Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Named {
-    /// Those of Pyquaticus: full or half speed in eight directions, and a stop.
+    /// The actions of Pyquaticus: full or half speed in eight directions, and a stop.
     Pyquaticus,
     /// Two numbers from -1 to 1: the turn in half turns clockwise, and the speed, from 0 to the
     /// boat's maximum.
     Continuous,
-    /// The values of a variable of a strategy: what its rules and modes do, not how the boat
+    /// The values of a strategy variable: they select what its rules and modes do, not how the boat
     /// steers.
     Options,
 }
@@ -163,8 +163,8 @@ pub enum Action {
 }
 
 impl Action {
-    /// The discrete action that the probabilities of these logits give for a uniform number from 0
-    /// to 1.
+    /// The discrete action sampled from the softmax of these logits with a uniform number from 0 to
+    /// 1.
     pub fn drawn(logits: &[f32], unit: f64) -> Action {
         let mut below = 0.0;
         let all = probabilities(logits);
@@ -205,7 +205,7 @@ impl ActionSpace {
     }
 }
 
-/// The probabilities of actions with these logits.
+/// The softmax of the logits: the probability of each action.
 pub fn probabilities(logits: &[f32]) -> Vec<f32> {
     let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let parts = logits
@@ -245,7 +245,7 @@ impl ActionSpace {
     }
 
     /// Number of a policy's outputs: one logit for each discrete action, or one number for each
-    /// dimension; a minimum for options.
+    /// dimension; for options, the minimum.
     pub fn outputs(self) -> usize {
         self.count().unwrap_or(2)
     }
@@ -387,7 +387,7 @@ mod tests {
                 Some(Action::Continuous(asked))
             );
         }
-        // Slowly, 10 degrees to starboard; and almost stopped, in any direction.
+        // A slow turn of 10 degrees to starboard, and almost zero speed in any direction.
         for (space, turn_deg, speed_m_s, want) in [
             (ActionSpace::Pyquaticus, 10.0, 1.4, Some(12)),
             (ActionSpace::Pyquaticus, 70.0, 0.1, Some(16)),

@@ -1,7 +1,7 @@
 //! A kind of boat: its hull, thrusters and front seat.
 //!
 //! Everything is SI, in the boat's own frame with its origin amidships (CO): x ahead, y to
-//! starboard, yaw clockwise. `sim::hull` contains the equation with these numbers.
+//! starboard, yaw clockwise. `sim::hull` contains the equations that use these numbers.
 //!
 //! These types also declare the keys of boat files. For a key in a different unit, `rename` sets
 //! the key's name, the description gives the unit, and `x-field` names the field. A number that is
@@ -35,7 +35,7 @@ pub struct Boat {
     pub sensors: Sensors,
 }
 
-/// The behaviour of a boat without an order, out of action, or on a hold order.
+/// What a boat does without an order, while out of action, or on a hold order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Hold {
@@ -62,7 +62,7 @@ pub enum Drive {
 }
 
 impl Boat {
-    /// The maximum speed that its front seat accepts, m/s.
+    /// The maximum speed that the front seat accepts, m/s.
     pub fn speed_max_m_s(&self) -> f64 {
         match &self.drive {
             Drive::Thrusters { autopilot, .. } => autopilot.speed_max_m_s,
@@ -120,10 +120,10 @@ pub struct Kinematic {
     #[schemars(description = "Turn bias, degrees/s.")]
     #[schemars(rename = "rotate_deg_s", range(min = -90, max = 90), extend("default" = 0, "x-field" = "rotate_rad_s"))]
     pub rotate_rad_s: f64,
-    /// Acceleration limit, m/s², of which the boat uses half; 0: no limit.
+    /// Acceleration limit, m/s²; the boat achieves half of it; 0: no limit.
     #[schemars(range(min = 0, max = 100), extend("default" = 0))]
     pub acceleration_max_m_s2: f64,
-    /// Deceleration limit, m/s², of which the boat uses half; 0: no limit.
+    /// Deceleration limit, m/s²; the boat achieves half of it; 0: no limit.
     #[schemars(range(min = 0, max = 100), extend("default" = 0.5))]
     pub deceleration_max_m_s2: f64,
     /// Thrust per desired speed, % per m/s; 0: use `speed_pid`.
@@ -172,7 +172,7 @@ pub struct Hull<E = f64> {
     /// Moment of inertia about amidships, kg m². Default: m (L/4)² + m x_g².
     #[schemars(range(min = 0.0001, max = 1000000000))]
     pub yaw_inertia_kg_m2: E,
-    /// Centre of gravity ahead of amidships, m, within the hull.
+    /// Centre of gravity, m ahead of amidships, within the hull.
     #[schemars(range(min = -50, max = 50), extend("default" = 0))]
     pub x_g_m: f64,
     /// Added mass in surge A11, kg. Default: 2.7 ρ (m/ρ)^(5/3) / L², ρ = 1000 (Söding).
@@ -267,7 +267,7 @@ pub struct Flaws {
     pub ventilation: Option<Ventilation>,
 }
 
-/// Both factors on thrust, under their names in files.
+/// The factors on port and starboard thrust, as named in files.
 #[derive(JsonSchema)]
 #[expect(dead_code, reason = "the schema of two keys")]
 struct Gains {

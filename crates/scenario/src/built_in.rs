@@ -14,7 +14,7 @@ static BUILT_IN: OnceLock<(BuiltIn, OnOverride)> = OnceLock::new();
 
 /// Sets the built-in files of this process. Later calls have no effect.
 pub fn set_built_in(files: BuiltIn, on_override: OnOverride) {
-    // Later callers pass the same files: a process has one program.
+    // Later callers pass the same files: a process runs only one program.
     let _ = BUILT_IN.set((files, on_override));
 }
 
@@ -28,8 +28,8 @@ pub(super) fn note_override(path: &Path, bytes: &[u8], built_in: &[u8]) {
 /// The built-in replacement for a missing file in a folder of `scenarios`, such as
 /// `scenarios/seas/gale.toml`, however the path is written.
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
-    // A path typed within `scenarios` lacks that folder's name. Without a working folder, only the
-    // typed path is known.
+    // A path typed in the folder `scenarios` lacks that folder's name, so make it absolute. If the
+    // working directory is unknown, use the path as typed.
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut parts = vec![];
     for component in whole.components() {
@@ -47,8 +47,9 @@ pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     }
 }
 
-/// The argument for a scenario file on a command line: its name if commands find it in `scenarios`
-/// here, in a parent folder or among the built-in files; otherwise its path, quoted for a shell.
+/// The command-line argument for a scenario file: its name if commands find it in `scenarios` in
+/// the working directory or a parent, or among the built-in files; otherwise its path, quoted for a
+/// shell.
 pub fn argument_for(path: &Path) -> String {
     let whole = std::path::absolute(tidied(path)).unwrap_or_else(|_| path.to_owned());
     let parts: Vec<_> = whole.iter().collect();

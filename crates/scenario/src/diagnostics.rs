@@ -20,13 +20,12 @@ impl Diagnostics {
         self.sources.borrow_mut().add(path, text)
     }
 
-    /// Reports a fault of the value at `at`, unless its line has a syntax error.
+    /// Reports a fault in the value at `at`, unless its line has a syntax error.
     pub(super) fn note(&self, at: usize, message: impl Into<String>) {
         self.count(at, message, |sources| !sources.is_broken_line(at));
     }
 
-    /// Reports a problem that broken syntax in the file may have caused, unless there is broken
-    /// syntax.
+    /// Reports a problem that a syntax error may have caused, unless the file has one.
     pub(super) fn note_if_intact(&self, at: usize, message: impl Into<String>) {
         self.count(at, message, |sources| !sources.is_broken_file(at));
     }
@@ -80,7 +79,7 @@ pub(super) fn keys_of(path: &str) -> impl Iterator<Item = &str> {
 
 /// The pattern of names, in a schema.
 pub(super) const NAME_PATTERN: &str = "^[a-z0-9_]{1,40}$";
-/// The same pattern in plain language.
+/// [`NAME_PATTERN`] in plain language.
 pub(super) const NAME_EXPECTED: &str = "1 to 40 characters from a-z, 0-9 and _";
 
 /// Whether this is a valid name of a vehicle, team or rival.

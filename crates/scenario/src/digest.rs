@@ -4,7 +4,7 @@ use super::Scenario;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The digest of a plan, from its file's meaning and the content of its games' files, in hex.
+/// The digest of a plan (of its parsed content, `meaning`, and its games' files), in hex.
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
     let contents = files
         .iter()

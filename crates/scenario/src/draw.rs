@@ -11,7 +11,7 @@ use primitives::stream::Stream;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Number of standard deviations within which normal and log-normal numbers are redrawn to lie.
+/// Normal and log-normal numbers are redrawn until within this many standard deviations.
 const WITHIN_SIGMA: f64 = 3.0;
 
 /// A number drawn for a game.
@@ -53,11 +53,11 @@ pub(super) enum Drawing {
 pub(super) struct Owner<'a> {
     /// The vehicle, `sea`, or the shared table.
     pub(super) name: &'a str,
-    /// The offset of the owner's part of a path.
+    /// The offset in a path at which the owner's part begins.
     pub(super) path_from: usize,
 }
 
-/// The kind of distribution that a table is meant to be, if any.
+/// The kind of distribution that a table specifies, if any.
 pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
     ["uniform", "normal", "log_normal", "choice"]
         .into_iter()

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// The extension of the path of such a strategy: `FOLDER.host` for the entry in `FOLDER`.
 const HOST: &str = "host";
-/// The same for the model in `FILE.onnx`: `FILE.policy`.
+/// The extension for the model in `FILE.onnx`: `FILE.policy`.
 const POLICY: &str = "policy";
 
 /// The path of the strategy that runs the entry in a folder, or the entry with this `solution.py`.

@@ -1,8 +1,7 @@
 //! Faults of boats during a game, at a fixed time or repeatedly.
 //!
-//! They belong to the game and depend on its seed like everything in it. Spontaneous failures, such
-//! as a receiver that freezes or a link that loses messages in bursts, are defined with the sensor
-//! or the link.
+//! Like everything in a game, they depend on its seed. Spontaneous failures, such as a receiver
+//! that freezes or a link that loses messages in bursts, are defined with the sensor or the link.
 
 use primitives::id::VehicleId;
 use primitives::reseed::Seeds;
@@ -114,7 +113,7 @@ pub fn fault_spans(
         let lasts = fault.for_s.map_or(end, SimTime::from_s);
         let wait = |stream: &mut Stream| {
             let mean_s = fault.every_s?;
-            // With a unit of 0, the wait would be infinite.
+            // Not `log(unit)`: a unit of 0 would give an infinite wait.
             Some(SimTime::from_s(
                 (-mean_s * libm::log1p(-stream.unit())).min(1e7),
             ))
@@ -140,7 +139,7 @@ pub fn fault_spans(
                 direction_rad: std::f64::consts::TAU * drawn.unit(),
                 offset_rad: fault.offset_deg.unwrap_or(0.0).to_radians(),
             });
-            // A minimum wait, so that even with faults of zero duration the game ends.
+            // Wait at least 1 ms, so that the loop ends even with faults of zero duration.
             next = wait(&mut drawn).map(|wait| over + wait.max(SimTime(1_000_000)));
         }
     }
@@ -213,8 +212,8 @@ mod tests {
             )
         };
         let count: usize = (0..100).map(|seed| of(0, "a", seed).len()).sum();
-        // 3600 s with one fault every 60 s, over 100 games: 6000, with a standard deviation of
-        // about 65.
+        // Expected: 6000 faults in 100 games of 3600 s with one every 60 s, with a standard
+        // deviation of about 65.
         assert!((5700..6300).contains(&count), "{count}");
         assert_ne!(of(0, "a", 1)[0].from, of(1, "b", 1)[0].from);
         assert_ne!(of(0, "a", 1)[0].from, of(0, "a", 2)[0].from);
@@ -254,15 +253,16 @@ mod tests {
             counts[0] += within(1800.0, 1860.0);
             counts[1] += within(2800.0, 2860.0);
         }
-        // One fault every 60 s, 200 times, with a standard deviation of about 8 if the games are
-        // independent.
+        // Expected: 200 faults in 200 windows of 60 s with one every 60 s, with a standard
+        // deviation of about 8 if the games are independent.
         assert!((160..240).contains(&counts[1]), "{counts:?}");
-        // All share the past of `first`, whose last span ends earlier.
+        // All games have the same faults as `first` until the reseed, and its last one ends before
+        // that.
         let last = first.iter().rfind(|span| span.from <= half);
         let last = last.expect("there is one");
         assert!(last.to < half, "the seed of this test leaves no span open");
-        // Starting without a fault, a minute has 60/50 waits, minus the duration of the spans: 1.03
-        // on average.
+        // A minute that starts without a fault has 60/50 waits minus the duration of the spans:
+        // 1.03 faults on average.
         assert!((165..245).contains(&counts[0]), "{counts:?}");
     }
 }

@@ -10,7 +10,7 @@ use primitives::frame::Ned;
 use primitives::time::SimTime;
 use serde_json::{Map, Value, json};
 
-/// The mark of a key whose field has a different name or unit.
+/// The schema key that gives the field's name, if its name or unit differs.
 const FIELD: &str = "x-field";
 
 /// Converts a table's values by key to values by field.

@@ -73,8 +73,8 @@ impl Files {
                     .for_each(|built_in| note_override(path, &bytes, built_in));
                 bytes.into()
             }
-            // A file on disk always wins, and names work in any folder. Unpacking the built-in
-            // files into a user's folder would leave outdated copies behind.
+            // A file on disk always takes precedence, and built-in names work in any folder.
+            // Unpacking the built-in files into a user's folder would leave outdated copies behind.
             (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
             (Err(error), None) => match entry::strategy(path) {
                 Some(text) => text.into_bytes().into(),

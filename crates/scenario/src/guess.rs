@@ -13,7 +13,7 @@ pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
     let shared = |choice: &&'a str| {
         let shared = choice.split('_').filter(|word| words.contains(word));
         let shared: Vec<&str> = shared.collect();
-        // A common unit alone is not a similarity.
+        // A shared unit alone does not make names similar.
         let is_near = 2 * shared.len() > words.len().max(choice.split('_').count());
         (is_near && shared.iter().any(|word| word.len() > 2)).then_some((shared.len(), *choice))
     };

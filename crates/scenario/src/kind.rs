@@ -93,7 +93,7 @@ impl Kind {
     /// Reads and checks a file of this kind.
     ///
     /// # Errors
-    /// All faults of the file, its bases and the files it refers to.
+    /// All faults in the file, its bases and the files it refers to.
     pub fn check(self, path: &Path) -> Result<(), Problems> {
         (self.check)(path)
     }
@@ -130,7 +130,7 @@ impl Kind {
     }
 }
 
-// By name only: two kinds with the same name would have the same folder.
+// Compare only names: two kinds with the same name would have the same folder.
 impl PartialEq for Kind {
     fn eq(&self, other: &Kind) -> bool {
         self.name == other.name

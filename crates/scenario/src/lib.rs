@@ -253,7 +253,7 @@ pub struct Vehicle {
     pub boat: usize,
     /// Index into [`Scenario::strategies`].
     pub strategy: usize,
-    /// Older recordings use a former name of this field.
+    /// Start position. Older recordings call this field `berth`.
     #[serde(alias = "berth")]
     pub start_position: StartPosition,
     /// The source of its motion.
@@ -268,7 +268,7 @@ pub enum Source {
     #[default]
     #[serde(alias = "Simulated")]
     Simulated,
-    /// A real boat: its gateway reports its position. Such games run in real time.
+    /// A real boat: its gateway reports its position. The game then runs in real time.
     #[serde(alias = "External")]
     External,
 }
@@ -284,8 +284,9 @@ pub enum StartPosition {
         /// Bounds along the field, m from the team's own end.
         along_m: (f64, f64),
         /// Bounds across the field, m from the port edge as seen from the team's own end. For the
-        /// first team, that edge joins corners 1 and 2 (`across` is the field's depth minus this);
-        /// for the second, it joins corners 0 and 3 (`across` is this).
+        /// first team, this is the edge between corners 1 and 2 (so `across_m` of `Field::at` is
+        /// the field's depth minus this distance); for the second, the edge between corners 0 and 3
+        /// (`across_m` is this distance).
         across_m: (f64, f64),
         /// Minimum distance to other vehicles and obstacles, m.
         gap_m: f64,

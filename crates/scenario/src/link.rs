@@ -1,7 +1,6 @@
 //! Radio links between minds and boats, with their delays and losses.
 //!
-//! They belong to the game and depend on its seed like everything in it. Faults of the real network
-//! are separate.
+//! Like everything in a game, they depend on its seed. Faults of the real network are separate.
 
 use primitives::frame::Ned;
 use schemars::JsonSchema;

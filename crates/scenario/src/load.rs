@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// the game's own seed; [`Scenario::of_seed`] uses others.
 ///
 /// # Errors
-/// All faults of all files, by file, line and column.
+/// All faults in all files, by file, line and column.
 pub fn load(path: &Path) -> Result<Scenario, Problems> {
     load_with(path, &Overrides::default())
 }
@@ -26,16 +26,16 @@ pub fn load(path: &Path) -> Result<Scenario, Problems> {
 /// Reads and checks a game with overrides.
 ///
 /// # Errors
-/// All faults of all files, by file, line and column; or the fault of a strategy for an unknown
+/// All faults in all files, by file, line and column; or the fault in a strategy for an unknown
 /// team.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     load_with_files(path, overrides, &Arc::default())
 }
 
-/// As for [`load_with`], from these files.
+/// Like [`load_with`], but reads from these files.
 ///
 /// # Errors
-/// All faults of all files, as above.
+/// All faults in all files, as for [`load_with`].
 pub fn load_with_files(
     path: &Path,
     overrides: &Overrides,
@@ -75,7 +75,7 @@ impl Scenario {
     /// This scenario's game with `seed`: distributions are drawn again.
     ///
     /// # Errors
-    /// Faults of the combination of numbers, each of which is valid alone.
+    /// Faults in the combination of numbers, each of which is valid on its own.
     pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
         let is_other = |recipe: &&Recipe| recipe.seed != Some(seed);
         let Some(recipe) = self.recipe.as_ref().filter(is_other) else {
@@ -121,7 +121,7 @@ impl Scenario {
 /// Reads and checks the file at `path` as a file of kind `F`.
 ///
 /// # Errors
-/// All faults of it, its bases and referenced files, by file, line and column.
+/// All faults in the file, its bases and referenced files, by file, line and column.
 pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
     F::load(path)
 }
@@ -130,7 +130,7 @@ pub fn load_file<F: ScenarioFile>(path: &Path) -> Result<F, Problems> {
 /// with this seed.
 ///
 /// # Errors
-/// All faults of it, its bases and referenced files, by file, line and column.
+/// All faults in the file, its bases and referenced files, by file, line and column.
 pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Drawn>), Problems> {
     let read = |drawing: Drawing| {
         Loader::new(drawing, &Overrides::default(), Basis::default()).faultless::<F>(path)
@@ -147,7 +147,7 @@ pub fn draw_file<F: ScenarioFile>(path: &Path, seed: u64) -> Result<(F, Vec<Draw
 /// setting changes are checked once.
 ///
 /// # Errors
-/// All faults of any of the game's files.
+/// All faults in any of the game's files.
 pub fn check_variants(
     game: &Path,
     first: &Overrides,
@@ -163,7 +163,7 @@ pub fn check_variants(
     Problems::of(faults.flat_map(|Problems(found)| found).collect())
 }
 
-/// The value of an empty file of a kind.
+/// The value of an empty file of kind `F`.
 ///
 /// # Errors
 /// If a key has no default.
@@ -183,7 +183,7 @@ pub fn default_of<F: ScenarioFile>() -> Result<F, Problems> {
 /// top-level keys, including those of its bases; ties go to the first of `kinds`.
 ///
 /// # Errors
-/// All faults of it, its bases and referenced files.
+/// All faults in the file, its bases and referenced files.
 pub fn check_file(kinds: &[Kind], path: &Path) -> Result<Kind, Problems> {
     let kind =
         Kind::by_folder(kinds, path).unwrap_or_else(|| Kind::by_keys(kinds, &top_keys(path)));

@@ -1,4 +1,4 @@
-//! The process of reading a file and all referenced files.
+//! Reads a file and all referenced files.
 
 use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn};
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Name of the kind, path, and owner: for strategies, the team whose settings are in it.
+/// Kind, path and owner of a file: a strategy's owner is the team whose settings it contains.
 pub(super) type Key = (&'static str, PathBuf, String);
 
 pub(super) fn key<F: ScenarioFile>(path: &Path, owner: &str) -> Key {

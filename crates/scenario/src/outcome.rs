@@ -28,8 +28,8 @@ pub struct Outcome {
     /// Whether the game depends on the seed.
     #[serde(default)]
     pub random: bool,
-    /// Whether wind, waves or current favour one end of the field: then a single game does not show
-    /// which team is better.
+    /// Whether wind, waves or current favour one end of the field: if so, a single game does not
+    /// show which team is better.
     #[serde(default)]
     pub ends_differ: bool,
     /// The winning team's name; `None` for a draw or an unfinished game.
@@ -136,8 +136,8 @@ impl EventOutcome {
 }
 
 impl Outcome {
-    /// The outcome of a game with this digest of its final state and all events, this many physics
-    /// ticks, and these points by team index.
+    /// The outcome of a game. `digest` covers its final state and all events, and `score` is by
+    /// team index.
     pub fn new(
         scenario: &Scenario,
         digest: u128,

@@ -29,8 +29,8 @@ impl Overrides {
         targets.any(|(target, _)| target.name() == kind)
     }
 
-    /// The name of this team if a setting overrides a value of its strategy, otherwise an empty
-    /// name: it is the owner of the strategy file. Teams without overrides share a file.
+    /// The owner of a team's strategy file: this team if a setting overrides a value of its
+    /// strategy, otherwise an empty name, because teams without overrides share a file.
     pub(super) fn owner_of_strategy<'a>(&self, team: &'a str) -> &'a str {
         let mut settings = self.settings.iter();
         let has_own = settings.any(|setting| setting.team() == Some(team));

@@ -242,9 +242,9 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
     Ok(())
 }
 
-/// The index of the output with the action: the only output of the right size, or else the only one
-/// for an action index, which is an integer if there is also a value. The number of options is the
-/// output's size.
+/// The index of the output with the action: the only output of the right size, or else the only
+/// scalar, as an action index. If there are several scalars, such as a value, it is the integer
+/// one. Options have one output, whose size is their number.
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     let of = |is_it: &dyn Fn(&Port) -> bool| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();

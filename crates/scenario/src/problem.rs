@@ -48,7 +48,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// All faults of a file and its referenced files, by file, line and column; never empty.
+/// All faults in a file and its referenced files, by file, line and column; never empty.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", one_a_line(.0))]
 pub struct Problems(pub Vec<Problem>);

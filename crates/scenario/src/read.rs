@@ -58,13 +58,13 @@ impl<T> Document<'_, T> {
         !wrong.any(|wrong| is_below(wrong, path) || is_below(path, wrong))
     }
 
-    /// Reports a fault of the value at `path`, or of the innermost existing table.
+    /// Reports a fault in the value at `path`, or in the innermost existing table.
     pub fn note(&self, path: &str, message: impl Into<String>) {
         self.loader.diagnostics.note(self.at(path), message);
     }
 
-    /// Reports a fault of the value at `path` that broken syntax in the file may have caused,
-    /// unless there is broken syntax.
+    /// Reports a fault in the value at `path` that a syntax error may have caused, unless the file
+    /// has one.
     pub(super) fn note_if_intact(&self, path: &str, message: impl Into<String>) {
         let at = self.at(path);
         self.loader.diagnostics.note_if_intact(at, message);
@@ -120,11 +120,11 @@ impl<T> Document<'_, T> {
 /// Maximum size of a file, bytes: files are written by people.
 const LARGEST_BYTES: u64 = 4 << 20;
 const LONGEST_CHAIN: usize = 16;
-/// Keys that count only in a strategy file itself, not in its bases.
+/// Keys that are ignored in the bases of a strategy file.
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
-/// Reads the file of a kind at `path` with its bases, and draws its numbers for `owner`. If it
-/// cannot be read, the problem is at the reference, `asked_at`.
+/// Reads the file of the given kind at `path` with its bases, and draws its numbers for `owner`. If
+/// it cannot be read, the problem is at the reference, `asked_at`.
 pub(super) fn document<'a, T: DeserializeOwned>(
     loader: &'a Loader,
     kind: Kind,
@@ -209,8 +209,8 @@ fn put_settings(loader: &Loader, (kind, owner): (Kind, &str), tree: &mut Node) {
     }
 }
 
-/// Reads a file, merges it with its bases, and reports their syntax errors; in bases, the keys in
-/// `own` do not count.
+/// Reads a file, merges it with its bases, and reports their syntax errors; ignores the keys in
+/// `own` in bases.
 pub(super) fn tree(
     loader: &Loader,
     path: &Path,

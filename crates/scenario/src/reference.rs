@@ -41,8 +41,8 @@ struct Section {
     text: String,
 }
 
-/// Collects the section of the keys at `path`, already described as `said`, and those of the tables
-/// in it. Equal tables share a section.
+/// Collects the section for the keys at `path`, described as `said` in the table above, and the
+/// sections for nested tables. Equal tables share a section.
 fn collect(sections: &mut Vec<Section>, heading: &str, path: &str, (about, said): (&Value, &str)) {
     let mut text = in_a_line(about.get(TABLE).unwrap_or(&about["description"]));
     text = if text.is_empty() || text == said {
@@ -151,7 +151,7 @@ fn names(page: &mut String) {
             let _ = writeln!(page, "| `{}` | {} |", fact.name(), line(fact.meaning()));
         }
     }
-    page.push_str("\n### Measures\n\nOf a place or boat.\n");
+    page.push_str("\n### Measures\n\nProperties of a place or boat.\n");
     for (is_truth, kind) in [(true, "truth"), (false, "number")] {
         let _ = write!(page, "\n| {kind} | meaning |\n|---|---|\n");
         for measure in Measure::all()
@@ -168,7 +168,7 @@ fn names(page: &mut String) {
             let _ = writeln!(page, "| `{name}(place)`{two} | {meaning} |");
         }
     }
-    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of these: of several, the nearest.\n");
+    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of the following; if there are several, the nearest.\n");
     page.push_str("\n| place | meaning |\n|---|---|\n");
     for mark in Mark::all() {
         let _ = writeln!(page, "| `{}` | {} |", mark.name(), line(mark.meaning()));
@@ -249,7 +249,7 @@ pub fn meaning(key: &str) -> Option<String> {
     (!meaning.is_empty()).then(|| meaning.to_owned())
 }
 
-/// The schema of a key of a table: one of its own keys, any name, or a key of one kind of table.
+/// The schema of a key of a table: one of its own keys, any name, or a key of one of its kinds.
 fn key_in<'a>(about: &'a Value, key: &str) -> Option<&'a Value> {
     let named = || Some(&about["additionalProperties"]).filter(|named| named.is_object());
     let mut kinds = entries(about, "oneOf").chain(entries(about, "anyOf"));
@@ -295,7 +295,7 @@ fn is_pair(about: &Value) -> bool {
     about["minItems"] == 2 && about["maxItems"] == 2 && about["items"].get("properties").is_none()
 }
 
-/// The allowed values, in plain language; a range alone is that of a number.
+/// The allowed values, in plain language; for numbers, the range alone.
 fn value_of(about: &Value) -> String {
     if let Some(choices) = about["oneOf"].as_array() {
         return choices.iter().map(choice).collect::<Vec<_>>().join(", ");
@@ -349,14 +349,13 @@ fn kind_of(about: &Value) -> String {
         return title.to_owned();
     }
     match about["anyOf"][0]["type"].as_str() {
-        Some("array") => return "pair or text".to_owned(),
-        Some(_) => return "number, boolean or text".to_owned(),
+        Some("array") => return "pair or string".to_owned(),
+        Some(_) => return "number, boolean or string".to_owned(),
         None => {}
     }
     match about["type"].as_str().unwrap_or_default() {
         "string" if about.get("const").is_some() => "one of those below".to_owned(),
         "string" if about["x-expected"] == "the path of a file" => "path".to_owned(),
-        "string" => "text".to_owned(),
         "object" => "table".to_owned(),
         name => name.to_owned(),
     }

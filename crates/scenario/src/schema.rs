@@ -16,10 +16,10 @@
 //!   the field is an `Option`. A list or a table without required parts may be omitted too, and is
 //!   then empty.
 //! * Choices are enums with `rename_all = "snake_case"` and a doc comment for each choice.
-//! * `extend("x-expected" = "…")` is the expectation in messages, where the type alone is not
+//! * `extend("x-expected" = "…")` states the expected value in messages where the type alone is not
 //!   enough.
-//! * `rename` with `extend("x-field" = "…")` gives the key another name, and thereby another unit,
-//!   than the field.
+//! * `rename` with `extend("x-field" = "…")` gives the key a different name, and thereby a
+//!   different unit, from those of the field.
 //! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
 //!
 //! [`declared`] is the schema in this form, used for reading files (see `validate`); [`schema`] is

@@ -31,7 +31,8 @@ pub struct Sea {
 }
 
 impl Sea {
-    /// Whether nothing in this sea moves boats. Otherwise one end of a field has an advantage.
+    /// Whether the sea has no waves, wind or current. Otherwise, one end of the field may have an
+    /// advantage.
     pub fn is_at_rest(&self) -> bool {
         let Current {
             mean_m_s,
@@ -176,7 +177,8 @@ pub struct Tide {
     pub phase: f64,
 }
 
-/// A current that grows linearly across: V(p) = `per_m` (p − origin) · `across`, along `toward`.
+/// A current that grows linearly across its direction: V(p) = `per_m` (p − origin) · `across`,
+/// along `toward`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shear {
     /// The unit vector of the flow.
@@ -195,7 +197,7 @@ pub struct Eddy {
     /// Centre, [x, y] in m from the datum.
     #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)), extend("x-field" = "centre"))]
     pub centre: Ned,
-    /// Core radius, m; the flow is fastest at 1.121 of it.
+    /// Core radius, m; the flow is fastest at 1.121 times this radius.
     #[schemars(range(min = 1, max = 1000))]
     pub radius_m: f64,
     /// Maximum flow, m/s; positive is clockwise.

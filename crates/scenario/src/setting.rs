@@ -117,7 +117,7 @@ impl Setting {
         target_of(&self.key)
     }
 
-    /// The name of the team whose strategy it changes, if any.
+    /// The name of the team whose strategy this setting changes, if any.
     pub(super) fn team(&self) -> Option<&str> {
         let (team, _) = self.key.strip_prefix("strategy.")?.split_once('.')?;
         Some(team)

@@ -2,8 +2,8 @@
 //! defaults.
 //!
 //! The result always satisfies the schema. A default, or else the minimum or an empty string,
-//! replaces a faulty or missing value, so that later checks can find more; `Document::is_sound`
-//! returns whether the value is original.
+//! replaces a faulty or missing value, so that later checks can find more faults;
+//! `Document::is_sound` returns whether a value is from the file.
 
 use super::diagnostics::{NAME_EXPECTED, NAME_PATTERN, is_name, keys_of};
 use super::draw::{Owner, distribution_kind, draw};
@@ -99,7 +99,7 @@ impl<'a> Validator<'a> {
             || !(bound("minimum", f64::MIN)..=bound("maximum", f64::MAX)).contains(&number)
         {
             let found = match number {
-                // Written out, it would have up to 300 digits.
+                // Written out, such a number would have up to 300 digits.
                 large if large.is_finite() && large.abs() >= 1e15 => format!("{large:e}"),
                 nan if nan.is_nan() => "nan".to_owned(),
                 number => number.to_string(),
@@ -165,7 +165,7 @@ impl<'a> Validator<'a> {
             self.loader
                 .diagnostics
                 .note(surplus.unwrap_or(node).at, message);
-            // Its entries may still be valid.
+            // The list's entries may still be valid.
             self.wrong.push(format!("{}.length", self.path));
             if is_number(about) || about.is_array() {
                 return None;

@@ -12,7 +12,7 @@ fn shipped(file: &str) -> String {
         .to_string()
 }
 
-/// A game of two boats of the file `boat` on the sea `sea`, with `more` appended.
+/// A game with two boats from the file `boat` on the sea `sea`, with `more` appended.
 fn written(dir: &Path, boat: &str, sea: &str, more: &str) -> PathBuf {
     for folder in ["games", "boats", "seas"] {
         std::fs::create_dir_all(dir.join(folder)).unwrap();

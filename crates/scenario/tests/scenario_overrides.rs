@@ -195,8 +195,8 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
     assert_eq!(followed(&load(&game).unwrap()), [four, three].concat());
     let there = exchanged(&game, Overrides::default()).unwrap();
     assert_eq!(followed(&there), [three, four].concat());
-    // They are exchanged in games with other seeds too, including those that override one team's
-    // strategy.
+    // Strategies are exchanged in games with other seeds too, including those that override one
+    // team's strategy.
     assert_eq!(followed(&there.of_seed(9).unwrap()), followed(&there));
     let idle = instead(&[("blue", shipped("strategies/idle.toml"))]);
     let idle = exchanged(&game, idle).unwrap();
@@ -235,7 +235,8 @@ fn a_single_value_takes_the_place_of_what_a_file_of_its_kind_says() {
     // Other values are unchanged, and a game drawn again keeps the setting.
     assert_eq!(other.sea.wind, own.sea.wind);
     assert_eq!(other.of_seed(9).unwrap().rules.tag_radius_m, 12.5);
-    // The last of several settings counts, and a game without a sea file has a default one at rest.
+    // If a key is set several times, the last setting counts. A game without a sea file has a
+    // default sea at rest.
     let calm = shipped("games/pav01_vs_pav01.toml");
     let wind = ["from_deg=90", "speed_m_s=3", "speed_m_s=4"];
     let wind = wind.map(|value| format!("sea.wind.{value}"));

@@ -292,7 +292,7 @@ fn many_numbers_in_many_conditions_are_looked_at_before_long() {
     );
 }
 
-/// The name of a strategy with this content, or its problems; fails without a result in time.
+/// The name of a strategy with this content, or its problems; fails if there is no result in time.
 fn before_long(text: String) -> Result<String, Problems> {
     let (send, receive) = std::sync::mpsc::channel();
     std::thread::spawn(move || send.send(strategy_of(&text, &[]).map(|strategy| strategy.name)));

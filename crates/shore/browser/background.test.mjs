@@ -12,7 +12,7 @@ before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
 const GAME = scenario('games/pav01_vs_pav01.toml');
-/** The browser's advice when a test reads single pixels. */
+/** The browser's warning when a test reads single pixels. */
 const allows = /willReadFrequently/;
 const live = async (t, chart) => new Program(t, 'run', GAME, '--view', '--speed', '2x', '--no-record', '--listen', '127.0.0.1:0', '--chart', chart).url();
 

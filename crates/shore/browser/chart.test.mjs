@@ -1,4 +1,4 @@
-// The chart: selecting a boat moves the chart to it, keys zoom at it, ranges are measured; coordinates, a legend and dark mode.
+// The chart: it moves to a selected boat, keys zoom at that boat, and ranges are measured; coordinates, legend and dark mode.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -10,7 +10,7 @@ after(() => browser.close());
 
 /** Metres per degree of latitude, mean of the ellipsoid WGS 84. */
 const DEGREE_M = 111_132.95;
-/** Tolerance of coordinates, m: positions are written to a decimetre, degrees to a metre. */
+/** Tolerance of coordinates, m: positions are shown to the decimetre, degrees to about a metre. */
 const WRITTEN_M = 1.2;
 
 /** A game paused at its start. */
@@ -80,7 +80,7 @@ test('ranges are measured between boats and places, by hand and by keys', async 
   await sight.keys('Escape');
   assert.equal(await sight.get(() => squall.measured), null);
   await sight.until('the measurement is hidden', () => !document.getElementById('measured').checkVisibility());
-  // By keys only.
+  // With keys only.
   await sight.keys('m', ']', 'Enter', ']', ']', 'Enter');
   same(await sight.until('both ends are chosen', () => squall.measured), want('blue_one', 'red_one'));
 });

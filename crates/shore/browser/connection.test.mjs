@@ -40,7 +40,7 @@ const NOTE = () => {
   new MutationObserver(() => window.noted.push(box.hidden ? '' : box.textContent)).observe(box, { attributes: true });
 };
 
-/** A browser reports this itself when no server listens. */
+/** The browser's own error when no server listens. */
 const NOBODY = /WebSocket connection to .* failed/;
 
 test('a page reconnects by itself after a reload or a restart of its server', async (t) => {

@@ -11,7 +11,7 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** Presses the chart at a position, m. */
+/** Clicks the chart at a position, m. */
 const press = async (sight, x, y) => {
   const [right, down] = await sight.get(([x, y]) => {
     const { view } = squall;
@@ -31,7 +31,7 @@ test('a geofence is drawn by hand and by keys, and copied in the form of the gat
   await sight.press('#draw-fence');
   for (const [x, y] of [[10, 10], [100, 10], [100, 70]]) await press(sight, x, y);
   assert.match(await sight.text('#fence-editor'), /3 corners/);
-  // By keys, the fourth corner is at the centre of the chart; it causes no crossing.
+  // With keys, the fourth corner is at the centre of the chart; no sides cross.
   await sight.page.focus('#sheet');
   await sight.keys('Enter');
   assert.match(await sight.text('#fence-editor'), /4 corners/);
@@ -54,7 +54,7 @@ test('a geofence is drawn by hand and by keys, and copied in the form of the gat
     return [...box.querySelectorAll('button, select, textarea')].filter((each) => each.getBoundingClientRect().right > right - 8).map(({ id }) => id);
   });
   assert.deepEqual(cut, [], 'beyond the edge of the box');
-  // Two sides that cross are not a polygon.
+  // The sides of a polygon must not cross.
   await sight.page.selectOption('#fence-part', { label: 'Outline' });
   await sight.press('#fence-undo');
   await press(sight, 60, -5);
@@ -108,7 +108,7 @@ test('the geofence that gateways report is drawn with its keep-outs and the boat
   const sight = await Sight.open(t, browser, boats.url, { before: FENCED, allows: /willReadFrequently/, colorScheme: 'light' });
   await badge(sight, 'blue_one', 'disarmed');
   await sight.until('a fence is shown', () => squall.fences.length === 1 && squall.stops.length === 2);
-  // All of it is on the chart.
+  // The whole fence is on the chart.
   const { x, y, scale } = await sight.get(() => squall.view);
   const { width, height } = await sight.page.locator('#sheet').boundingBox();
   for (const [east, north] of [[-30, -20], [190, 100]]) {
@@ -135,7 +135,7 @@ test('the geofence that gateways report is drawn with its keep-outs and the boat
   assert.equal(await red(clear.x, clear.y + 4), 0, 'the other boat\'s circle is not red');
   await sight.press('[data-vehicle=red_one]');
   assert.match(await sight.text('#gateway'), /Geofence6\.3\sm to its edge, stops in 14\.0\sm/);
-  // A drawing can start from it.
+  // A drawing can start from the gateway's fence.
   await sight.press('#draw-fence');
   await sight.press('#fence-present');
   assert.equal(corners(await text(sight)).length, 7);

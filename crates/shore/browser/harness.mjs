@@ -9,7 +9,7 @@ import { delimiter, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
-/** Limit of every wait, ms, for slow machines. A shorter one is for writing tests. */
+/** Limit of every wait, ms, long enough for slow machines. Set a shorter one while writing tests. */
 export const LIMIT_MS = Number(process.env.LIMIT_MS ?? 60_000);
 /** Interval at which a condition is checked, ms. */
 const LOOK_MS = 40;
@@ -19,11 +19,11 @@ const LEAVE_MS = 10_000;
 /** The repository. */
 export const ROOT = resolve(fileURLToPath(import.meta.url), '../../../..');
 const SQUALL = resolve(process.env.SQUALL ?? join(ROOT, 'target/release/squall'));
-/** Serves the page's files from this folder, for work on the page without building the program. */
+/** The folder from which the page's files are served, to work on the page without rebuilding the program. */
 const WEB = process.env.SQUALL_WEB && resolve(process.env.SQUALL_WEB);
 const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync',
-  // Browsers keep foreign pages from connecting to this machine, and treat pages from the folder as foreign.
+  // Browsers keep public pages from connecting to this machine, and treat pages from the folder as public.
   ...(WEB ? ['--disable-features=LocalNetworkAccessChecks'] : [])];
 
 /** A file in the folder scenarios. */
@@ -68,7 +68,7 @@ export async function until(what, condition, limit_ms = LIMIT_MS) {
 
 const left = new WeakMap();
 
-/** Runs this at the end of the test, in reverse order. */
+/** Runs `end` after the test; several run in reverse order. */
 function afterwards(t, end) {
   if (!left.has(t)) {
     const ends = [];
@@ -80,7 +80,7 @@ function afterwards(t, end) {
   left.get(t).push(end);
 }
 
-/** A folder that is removed with the test. */
+/** A folder that is removed after the test. */
 export function folder(t) {
   const path = mkdtempSync(join(tmpdir(), 'squall-page-'));
   afterwards(t, () => rmSync(path, { recursive: true, force: true }));
@@ -146,7 +146,7 @@ export class Program {
     return code;
   }
 
-  /** Ends it like a power cut. */
+  /** Kills it, as a power cut would. */
   async kill() {
     this.child.kill('SIGKILL');
     await this.ended;
@@ -160,7 +160,7 @@ export async function squall(t, ...args) {
   return program.said;
 }
 
-/** A page in a browser. A test with it fails on any error on the page's console, except those that it `allows`. */
+/** A page in a browser. A test that uses it fails on any error on the page's console, except those that it `allows`. */
 export class Sight {
   /** Opens a page with a game, and waits until it is drawn. */
   static async open(t, browser, url, how = {}) {
@@ -169,7 +169,7 @@ export class Sight {
     return sight;
   }
 
-  /** Any page. */
+  /** Opens any page. */
   static async load(t, browser, url, { size = { width: 1440, height: 900 }, allows = null, before = null, ...more } = {}) {
     const context = await browser.newContext({ viewport: size, ...more });
     const page = await context.newPage();
@@ -235,7 +235,7 @@ export class Sight {
     for (const key of keys) await this.page.keyboard.press(key);
   }
 
-  /** Does something to the connection, and waits until the page has been greeted on a new one. */
+  /** Runs `act`, which ends the connection, and waits until the page has been greeted on a new one. */
   async greetedAnew(act) {
     const hello = await this.page.evaluateHandle(() => squall.hello);
     await act();

@@ -1,4 +1,4 @@
-// The layout around the chart: panels can be resized and hidden, the legend is beside the chart, and texts keep up with it.
+// The layout around the chart: panels can be resized and hidden, the legend is beside the chart, and text keeps up with the chart.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -79,7 +79,7 @@ test('the legend is beside the chart and never over it', async (t) => {
   await sight.until('the legend is shown', () => document.querySelectorAll('#chart-legend li canvas').length > 8);
   const [legend, sheet] = [await boxOf(sight, '#chart-legend'), await boxOf(sight, '#sheet')];
   assert(legend.x + legend.width <= sheet.x + 1, JSON.stringify({ legend, sheet }));
-  // The whole field is visible on the remaining chart.
+  // The whole field is visible on the remaining part of the chart.
   await sight.until('the field fits', () => {
     const { clientWidth } = document.getElementById('sheet');
     return squall.hello.chart.field.corners.every(([x]) => Math.abs((x - squall.view.x) * squall.view.scale) < clientWidth / 2);

@@ -27,7 +27,7 @@ test('a game is shown as it is played, up to its result', async (t) => {
   const names = ['blue_one', 'blue_two', 'red_one', 'red_two'];
   assert.deepEqual(await sight.get(() => squall.frame.boats.map((boat) => boat.name)), names);
   assert.deepEqual(await sight.page.$$eval('[data-vehicle]', (rows) => rows.map((row) => row.dataset.vehicle)), names);
-  // People read who plays and the score; the game's id is in its tab.
+  // The title shows who plays and the score; the game's id is in the tab `Game`.
   assert.match(await sight.page.title(), /^pav01 \d+ : \d+ pav01 – Squall$/);
   assert.deepEqual(await sight.page.$$eval('#score .name', (names) => names.map((each) => each.textContent)), ['pav01', 'pav01']);
   await sight.press('#tab-game');

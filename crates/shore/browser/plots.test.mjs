@@ -1,4 +1,4 @@
-// Plots: any quantities of any boats, in a replay and in a game, with one section of the game and one cursor, which the timeline shares.
+// Plots: any quantities of any boats, in a replay and in a running game; all plots share a time range and a cursor with the timeline.
 
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
@@ -15,7 +15,7 @@ const PAV01 = scenario('games/pav01_vs_pav01.toml');
 /** A long game is thinned, so a sample may be half a second old: the tolerances of speed and range for that case. */
 const OFF_M_S = 1;
 const OFF_M = 3.2;
-/** A pixel of the timeline, s. */
+/** The duration of a pixel of the timeline, s. */
 const PIXEL_S = 0.6;
 
 /** Plays and records a game. Returns the address of its replay at its start, and the result. */
@@ -34,7 +34,7 @@ const SHOWN = () => [...document.querySelectorAll('.plot')].map((plot) => ({
 }));
 const shown = (sight) => sight.get(SHOWN);
 
-/** Points at a part of the width of a plot's area. */
+/** Points at a fraction of the width of a plot's area. */
 async function pointAt(sight, plot, part, press = false) {
   const box = await sight.page.locator('.plot .u-over').nth(plot).boundingBox();
   const at = [box.x + box.width * part, box.y + box.height / 2];
@@ -73,7 +73,7 @@ test('values at the cursor are those of the boats, in all plots at once, and a p
       const range_m = Math.hypot(boat.x - other.x, boat.y - other.y);
       assert(Math.abs(range.values[called] - range_m) < OFF_M, `${range.values[called]} for ${range_m}`);
     }
-    // A cursor in each plot, at the same part of its width.
+    // A cursor in each plot, at the same fraction of its width.
     await sight.until(`each plot has a cursor at ${part} of its width`, (part) => [...document.querySelectorAll('.plot .u-over')].every((over) => {
       const { left, width } = over.getBoundingClientRect();
       return Math.abs((over.querySelector('.u-cursor-x').getBoundingClientRect().left - left) / width - part) < 0.02;
@@ -139,28 +139,28 @@ test('the timeline shows time, score and event under the pointer, has a scale, a
     assert(Math.abs(60 * minutes + seconds - event.at_s) < 0.6, `${text} for ${event.at_s}`);
     assert(text.includes(event.vehicle.replaceAll('_', ' ')) && text.includes(event.event === 'captured' ? 'CAPTURES' : 'grabs'), text);
     await pointTo(event.at_s + 1.5);
-    // The score as on the chart at that moment.
+    // The same score as on the chart at that moment.
     const told = [...(await tip()).matchAll(/(?:blue|red) (\d+)/g)].slice(0, 2).map(([, points]) => Number(points));
     await sight.page.mouse.click(await x(event.at_s + 1.5), line.y + 30);
     await sight.until('the replay is there', (t_s) => Math.abs(squall.t_s - t_s) < 0.7, event.at_s + 1.5);
     await sight.until('the score is the one in the tip', (told) => squall.score.join() === told.join(), told);
   }
   const [event] = scores;
-  // The section follows the replay, which must lie in it.
+  // The section follows the replay, whose moment must be in it.
   await sight.page.mouse.click(await x(event.at_s), line.y + 30);
   await sight.until('the replay is at the event', (t_s) => Math.abs(squall.t_s - t_s) < 0.7, event.at_s);
   await pointTo(event.at_s);
   const before = await sight.get(() => squall.span);
   await sight.page.mouse.wheel(0, -400);
   await sight.page.mouse.wheel(0, -400);
-  // Both turns of the wheel must arrive before the place of a moment is known.
+  // Both turns of the wheel must arrive before the position of a moment is known.
   await sight.page.waitForTimeout(300);
   const after = await sight.until('the section is shorter', (length) => squall.span.to_s - squall.span.from_s < length / 3 && squall.span, before.to_s - before.from_s);
   assert(Math.abs(after.pointed_s - before.pointed_s) < PIXEL_S, `the moment under the pointer stays: ${JSON.stringify({ before, after })}`);
   assert((await tip()).includes(event.vehicle.replaceAll('_', ' ')), 'the event stays under the pointer');
   await sight.page.mouse.click(await x(event.at_s + 5), line.y + 30);
   await sight.until('a press goes to the moment', (t_s) => Math.abs(squall.t_s - t_s) < 0.25, event.at_s + 5);
-  // A moment elsewhere moves the section with it.
+  // Going to a moment outside the section moves the section there.
   await sight.page.press('#timeline', 'End');
   await sight.until('the section follows', () => squall.t_s > 50 && squall.t_s <= squall.span.to_s + 0.2 && squall.t_s >= squall.span.from_s - 0.2);
   await sight.press('#time-whole');

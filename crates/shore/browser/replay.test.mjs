@@ -163,7 +163,7 @@ test('a recomputed helm agrees with the recording', async (t) => {
     await sight.until('the page says so', () => /matches the recorded order/.test(document.getElementById('helm-reason').textContent));
     const facts = await sight.text('#boat-summary');
     assert(facts.includes(mode.replaceAll('_', ' ').replaceAll(':', ' › ')) && /m\/s · \d{3}°$/.test(facts), facts);
-    // The chosen decision has a high utility, and the disc is not bare.
+    // The chosen decision has a high utility, and the rose is not empty.
     const painted = await sight.get(() => {
       const { width, height } = document.getElementById('rose');
       const copy = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d', { willReadFrequently: true });

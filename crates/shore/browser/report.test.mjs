@@ -28,10 +28,10 @@ async function tournament(t, ...words) {
 
 const view = async (t, path) => (await new Program(t, 'view', path, '--listen', '127.0.0.1:0')).url();
 
-/** Whether a text was inserted only as text. */
+/** Whether a string was inserted only as text. */
 const isText = (sight) => sight.get(() => document.title !== 'owned' && document.querySelector('img') === null);
 
-/** Texts with a contrast below 4.5 (WCAG 2.1, 1.4.3). */
+/** Elements with a contrast below 4.5 (WCAG 2.1, 1.4.3). */
 function faint() {
   const numbers = (colour) => {
     const found = colour.match(/[\d.]+/g).map(Number);
@@ -116,7 +116,7 @@ test('the ratings are sorted by any column, and each entry has its opponents, it
   await sort('Entry');
   assert.deepEqual(await column('.ratings', 1), names.toSorted());
 
-  // The rating over time ends at the rating.
+  // The curve of ratings ends at the final rating.
   const chart = () => sight.get(() => document.querySelector('.curve').ariaLabel);
   assert.match(await chart(), new RegExp(`^Rating, at the end: ${report.entries.map(({ name, rating }) => `${name.replaceAll('_', ' ')} ${rating.elo.toFixed(0)}`).join(', ')}\\.`));
   await sight.press('.ratings tbody th a:text-is("strategy 4")');
@@ -133,7 +133,7 @@ test('the ratings are sorted by any column, and each entry has its opponents, it
   await sight.press('button[aria-label="List the games against idle"]');
   await sight.page.waitForSelector('#games tbody tr');
   assert.equal(await sight.get(() => document.querySelectorAll('#games tbody tr').length), 10);
-  // The address leads here, and the browser's Back button leads to all entries.
+  // The address leads to this view, and the browser's Back button leads to all entries.
   await sight.page.reload();
   await sight.page.waitForSelector('#games tbody tr');
   assert.equal(await sight.text('#entry h2'), 'strategy 4');
@@ -145,7 +145,7 @@ test('the ratings are sorted by any column, and each entry has its opponents, it
 
 test('faults in a report or game are explained in text', async (t) => {
   const { place, path, report } = await tournament(t);
-  // Hostile texts, a game with a different result, and a seed with more digits than a JavaScript number can hold.
+  // Hostile strings, a game with a different result, and a seed with more digits than a JavaScript number can hold.
   const seed = '9007199254740993';
   report.tournament = HOSTILE;
   report.game = HOSTILE;
@@ -245,7 +245,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   await sight.press('#entries button >> nth=1');
   assert.deepEqual(await listed(), rows(own.filter((game) => game.entry === 'strategy_4')), 'a hidden entry');
 
-  // The last game has another seed and side than the point's command.
+  // The last game has a different seed and side from the point's command.
   await sight.press('#games-table tbody tr:last-child .watch');
   await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
   const last = own.findLast((game) => game.entry === 'strategy_4');
@@ -261,7 +261,7 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
     const answer = await fetch(new URL(`/sweep_games/${none}.json`, url));
     assert.equal(answer.status, 404, none);
   }
-  // Without its table the games exist without results; without its plan there are no games.
+  // Without the table, games are listed without results; without the plan, none are listed.
   rmSync(join(out, 'games.csv'));
   const bare = await Sight.load(t, browser, `${await view(t, out)}#point=0`);
   await bare.page.waitForSelector('#games-table .watch');
@@ -272,12 +272,12 @@ test('from a point of a sweep to all its games, to a replay of one, and back', a
   assert.equal(await without.get(() => document.querySelectorAll('.watch, button[aria-label^="List"]').length), 0);
 });
 
-/** Writes a training run of invented numbers: better from stage to stage. `more` of the reward tells runs apart. */
+/** Writes a training run of invented numbers, which improve from stage to stage. `more` is added to the reward, to tell runs apart. */
 function trainingRun(place, more = 0) {
   mkdirSync(join(place, 'games'), { recursive: true });
   const updates = [...Array(50).keys()].map((i) => `${(i + 1) * 20000},${i < 20 ? 'alone' : 'against'},${i / 10 + more},0.1,${i < 3 ? '' : 2 - i / 50},1.5,0.01,0.1,4,${i / 100}`);
   writeFileSync(join(place, 'updates.csv'), `samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs,explained_variance\n${updates.join('\n')}\n99`);
-  // Half the time passes at the first tenth of the samples.
+  // The first tenth of the samples takes half the time.
   writeFileSync(join(place, 'times.csv'), `samples,elapsed_s\n${[...Array(50).keys()].map((i) => `${(i + 1) * 20000},${i < 5 ? 720 * (i + 1) : 3600 + 80 * (i - 4)}`).join('\n')}\n`);
   writeFileSync(join(place, 'evaluations.csv'), 'samples,stage,opponent,won,drawn,lost,points,points_against,left_field,best\n'
     + '500000,alone,pav01,5,5,10,3.5,6.25,0.5,true\n500000,alone,<b>x</b>,20,0,0,9,1,0,true\n1000000,against,pav01,12,2,6,8,5,0.1,false\n1000000,against,<b>x</b>,10,0,10,4,4,0,false\n');
@@ -287,7 +287,7 @@ function trainingRun(place, more = 0) {
   writeFileSync(join(place, 'best.toml'), '');
 }
 
-/** The text read out for a curve. */
+/** The text that screen readers read for a curve. */
 const curve = (sight, title) => sight.until(`the curve ${title} is drawn`, (title) => [...document.querySelectorAll('.card:not([hidden]) .curve')]
   .map(({ ariaLabel }) => ariaLabel).find((text) => text?.startsWith(title)), title);
 
@@ -358,7 +358,7 @@ test('two training runs are compared over samples or hours, smoothed, with the b
   await sight.page.focus('.card .curve');
   await sight.keys('ArrowLeft', 'ArrowLeft');
   assert.match(await curve(sight, 'Mean reward'), /at 1\.44 hours/, 'half of the samples');
-  // The address names the other run, and the browser keeps the rest.
+  // The address contains the other run, and the browser stores the other choices.
   await sight.page.reload();
   await sight.until('both runs are shown again', () => document.querySelectorAll('#best tbody tr').length === 2);
   assert.deepEqual(await sight.get(() => [document.getElementById('axis').value, document.getElementById('smoothing').value]), ['hours', '0.9']);

@@ -1,4 +1,4 @@
-// Takes pictures of the page for people: node shots.mjs FOLDER [NAME …]
+// Takes screenshots of the page: node shots.mjs FOLDER [NAME …]
 
 import { copyFileSync, mkdirSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

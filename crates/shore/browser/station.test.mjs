@@ -1,4 +1,4 @@
-// The page as the operators' station for real boats: emulated ones with their gateways.
+// The page as the operator station for real boats: emulated ones with their gateways.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -158,7 +158,7 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   assert.match(await sight.text('#operated'), /red one cannot be armed yet\. Missing: .*a fresh order/);
   await sight.press('#tab-boats');
 
-  // Reset elsewhere, it stays until it is acknowledged here.
+  // After a reset on another page, the alarm stays until it is acknowledged on this one.
   const theirs = await Sight.open(t, browser, boats.url);
   await theirs.press('[data-vehicle=red_one]');
   assert.equal(await theirs.text('#operate-disarm'), 'Reset failsafe');

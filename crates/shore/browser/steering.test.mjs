@@ -59,7 +59,7 @@ function alone(t) {
 }
 
 test('two pages see one game; one steers a boat, and the other sees who steers', async (t) => {
-  // The others lie still, because safety moves the boat when others come near, and a slow machine needs time.
+  // The other boats stay still: safety behaviours would move this boat if they came near, and a slow machine needs time.
   const run = new Program(t, 'run', alone(t), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
   const url = await run.url();
   // Two browsers, as for two people: a page in the background draws nothing.
@@ -106,7 +106,7 @@ test('two pages see one game; one steers a boat, and the other sees who steers',
 
 const person = (t, ...words) => new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--no-record', '--listen', '127.0.0.1:0', ...words);
 
-/** Gamepads of a test: those in `pads` exist. */
+/** Fake gamepads: those in `pads` are connected. */
 const PADS = () => {
   window.pads = [];
   navigator.getGamepads = () => window.pads;
@@ -196,14 +196,14 @@ const NOTED = () => {
 test('a fast game is steered without gaps, and one at maximum speed is reported as too fast', async (t) => {
   const sight = await Sight.open(t, browser, await person(t, '--speed', '10x').url(), { before: NOTED });
   await take(sight);
-  // Whatever has the focus: a list would take the arrow keys.
+  // Keys steer whatever has the focus: a list would take the arrow keys.
   await sight.page.focus('#speed');
   await sight.keys(...Array(4).fill('ArrowUp'));
   const [course_deg, speed_m_s] = await ordered(sight);
   assert.equal(speed_m_s, 1);
   assert.equal(await sight.get(() => squall.state.speed), 10);
   await goes(sight, course_deg, speed_m_s);
-  // A machine may stall for a while, and then the boat stops, as it should: one period in ten must be driven.
+  // A machine may stall for a while, and then the boat stops, as it should: it must be driven in at least one period in ten.
   const stretch = () => sight.get((name) => new Promise((done) => {
     const middle = (values) => values.sort((one, other) => one - other)[Math.floor(values.length / 2)];
     const from_s = squall.t_s;

@@ -38,7 +38,7 @@ async function open(t, { out }, { report = null, hash = '', ...more } = {}) {
   return page;
 }
 
-/** A name as on every page. */
+/** A name as the pages show it. */
 const spelled = (name) => name.replaceAll('_', ' ');
 /** The index of a metric, and how the page writes its values. */
 const metric = (report, name) => report.metrics.findIndex((each) => each.name === name);
@@ -83,7 +83,7 @@ test('the page of a sweep shows the report as curves, a heat map and a tornado c
 test('axes and metrics have titles and units, and the page can be switched to dark', async (t) => {
   const played = await sweep(t);
   const { report } = played;
-  // From the reference of scenario files.
+  // The meanings come from the reference of scenario files.
   assert.deepEqual(report.axis_meanings, ['Mean speed at 10 m height, m/s.', 'Standard deviation of white noise, per axis, m.']);
   const faults = { ...report, axes: ['sea.wind.speed_m_s', 'fault.link.every_s'], axis_meanings: [report.axis_meanings[0], 'Instead of `at_s`: mean time to the next fault, s.'] };
   const page = await open(t, played, { report: faults });
@@ -108,7 +108,7 @@ test('axes and metrics have titles and units, and the page can be switched to da
   await page.click('#dark');
   assert.equal(await paper(), light);
   await page.emulateMedia({ colorScheme: 'dark' });
-  // Without a choice it follows the system.
+  // Without a choice, the theme follows the system.
   await page.waitForFunction((dark) => getComputedStyle(document.body).backgroundColor === dark, dark);
 });
 

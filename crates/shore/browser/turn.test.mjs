@@ -11,7 +11,7 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
-/** The browser's advice when a test reads single pixels. */
+/** The browser's warning when a test reads single pixels. */
 const allows = /willReadFrequently/;
 const NEAR_PX = 1.5;
 
@@ -35,7 +35,7 @@ const PLACE = ([x, y]) => {
 };
 const placeOf = (sight, x, y) => sight.get(PLACE, [x, y]);
 
-/** The colour of a layer there. */
+/** The colour of a layer at a position. */
 const colourAt = async (sight, layer, x, y) => sight.get(([id, right, down]) => {
   const canvas = document.getElementById(id);
   const { left, top } = document.getElementById('sheet').getBoundingClientRect();
@@ -139,7 +139,7 @@ test('boats, pointer, shoreline, measurements and arrows agree with the turned c
 });
 
 test('the driving dial turns with the chart', async (t) => {
-  // The others lie still, because a helm avoids them.
+  // The other boats stay still, because the helm would avoid them.
   const vehicles = ['blue_one', 'blue_two', 'red_one', 'red_two'].map((name, i) =>
     `[[vehicle]]\nname = "${name}"\nteam = "${name.split('_')[0]}"\nstrategy = "${scenario(`strategies/${i === 0 ? 'teleop' : 'idle'}.toml`)}"\n`).join('');
   const sight = await Sight.open(t, browser, await tall(t, 'person_2v2.toml', vehicles, '--pace', 'realtime'));

@@ -27,7 +27,7 @@ test('the page and the terminal give the same futures', async (t) => {
   await sight.page.selectOption('#what-if-team-blue', 'idle');
   await sight.page.selectOption('#what-if-sea', 'gale');
   await sight.page.selectOption('#what-if-futures', '20');
-  // Its keys do not reach the game.
+  // Keys typed in the form do not reach the game.
   const before_s = await sight.get(() => squall.t_s);
   await sight.page.focus('#what-if-play');
   await sight.keys('n', 'Home');
@@ -64,7 +64,7 @@ test('futures stop when the page wants no more, and need the right to control', 
   await sight.until('some futures are played', () => document.getElementById('what-if-progress').value > 0);
   await sight.press('#what-if-play');
   assert.equal(await sight.text('#what-if-said'), 'Stopped');
-  // The next question is not kept waiting by the first.
+  // The first question does not delay the next one.
   await sight.page.selectOption('#what-if-futures', '20');
   await sight.press('#what-if-play');
   await sight.until('other futures are played', () => document.getElementById('what-if-said').textContent.startsWith('20 futures'));

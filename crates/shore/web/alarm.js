@@ -30,7 +30,7 @@ class Sound {
 
   allow() {
     this.context ??= new AudioContext();
-    // If refused, the state stays as it is, and is shown.
+    // If the browser refuses, the state does not change, and the page shows it.
     if (this.context.state === 'suspended') this.context.resume().catch(() => {});
   }
 
@@ -129,7 +129,7 @@ export class Alarms {
     if (kind === 'unknown') return;
     const failed = kind === 'failsafe';
     this.set(name, 'failsafe', failed, `Failsafe: ${detail}`);
-    // A failsafe that was over before this page looked again.
+    // A failsafe that began and ended between two reports.
     if (before && failsafes > before.failsafes && !failed) {
       this.set(name, 'failsafe', true, `Failsafe: ${reading.facts.at(-1)?.words ?? ''}`);
       this.set(name, 'failsafe', false, '');

@@ -21,7 +21,7 @@ export class Ask {
     this.button.setAttribute('aria-controls', this.box.id);
     this.cancel = element('-cancel');
     this.confirm.addEventListener('click', () => {
-      // Not back to the button, where a second Enter would request the opposite.
+      // Do not return the focus to the button, where a second Enter would request the opposite.
       this.close(false);
       document.getElementById('sheet').focus({ preventScroll: true });
       this.act?.();
@@ -32,7 +32,7 @@ export class Ask {
     });
   }
 
-  /** Asks; calls `act` after a yes. With `slow` the focus is on Cancel, so that a second Enter cannot confirm. */
+  /** Asks; calls `act` if confirmed. With `slow` the focus is on Cancel, so that a second Enter cannot confirm. */
   ask(question, yes, act, slow = false) {
     if (open !== this) closeAsk();
     open = this;

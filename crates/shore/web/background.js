@@ -20,7 +20,7 @@ export class Background {
   constructor(on) {
     this.on = on;
     this.button = document.getElementById('show-chart');
-    /** As received from the server; null without one. */
+    /** As received from the server; null if there is none. */
     this.given = null;
     this.image = null;
     this.datum = null;
@@ -49,7 +49,7 @@ export class Background {
         await image.decode();
         this.image = image;
       }
-      // Only when complete: the game may have arrived first.
+      // Set it only when complete: the game may have arrived first.
       this.given = given;
     } catch (error) {
       notice(`Cannot show the chart beneath the field: ${error.message}`);

@@ -20,7 +20,7 @@ const AHEAD_S = 3;
 const FLAG_ROOM_PX = 24;
 /** With more boats than this, boats out of play fade, and only boats that are selected or pointed at show circles and all letters. */
 const CROWD = 24;
-/** Opacity in a crowd of boats that are out of play. */
+/** Opacity of boats that are out of play, in a crowd. */
 const FADED = 0.4;
 
 /** Traces `shape` at a position; length and width are in pixels. */

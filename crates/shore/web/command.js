@@ -5,7 +5,7 @@ import { make, write } from './words.js';
 /** How long the button confirms the copy, ms. */
 const SAID_MS = 2000;
 
-/** Copies a text. Pages from other machines have no clipboard. Returns whether it worked. */
+/** Copies a string. Pages from other machines have no clipboard. Returns whether it succeeded. */
 async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);

@@ -117,7 +117,7 @@ export class Controls {
     if (this.eStopped) {
       this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'), true);
     } else {
-      // At once: a confirmation may cost the decisive second, and a stop can always be released.
+      // Stop at once: a confirmation could cost the decisive second, and a stop can always be released.
       closeAsk();
       this.control('e_stop');
     }

@@ -2,9 +2,9 @@
 
 import { sectionOf } from './quantity.js';
 
-/** The time for one picture, ms. */
+/** Time budget for one picture, ms. */
 const PICTURE_MS = 3;
-/** Even on a slow machine, this many curves are drawn per frame. */
+/** Minimum number of curves drawn per frame, even on a slow machine. */
 const LINES_MIN = 8;
 /** Maximum number of samples of a curve. */
 const SAMPLES_MAX = 120;
@@ -30,7 +30,7 @@ export class Crowd {
     this.job = { ...job, context, drawn: 0 };
   }
 
-  /** Draws more of them. Returns whether all are drawn now; they are then on `canvas`, which replaces the one before. */
+  /** Draws more curves. Returns whether all are drawn now; they are then on `canvas`, which replaces the previous one. */
   go() {
     const { job } = this;
     if (!job) return false;
@@ -63,7 +63,7 @@ export class Crowd {
   }
 }
 
-/** The least and the greatest value from `from_s` to `to_s`; null without one. */
+/** The minimum and the maximum value from `from_s` to `to_s`; null if there is none. */
 export function extentOf(times, lists, from_s, to_s) {
   let [low, high] = [Infinity, -Infinity];
   let [first, last] = [0, times.length];

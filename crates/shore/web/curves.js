@@ -25,7 +25,7 @@ export class Curves {
   greet(game) {
     this.forget();
     this.vehicles = game.vehicles;
-    // Only the score.
+    // Request only the score.
     if (game.mode === 'replay') this.queue.push(null);
     this.next();
   }

@@ -168,7 +168,7 @@ export class Details {
   tellHelm(game, index) {
     const helm = game.helm;
     const report = helm?.report;
-    // A helm keeps utilities only while someone looks; a paused game computes none.
+    // A helm keeps utilities only while a page requests them; a paused game computes none.
     const unseen = isBare(report) && game.state?.phase === 'paused';
     const words = unseen ? UNSEEN : report ? this.computedWords(helm) : plain(helm?.reason ?? 'Waiting for its helm …');
     write(this.reason, words);

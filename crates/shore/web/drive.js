@@ -5,12 +5,12 @@ import { palette } from './palette.js';
 import { Stick } from './stick.js';
 import { bearing, number, plain, show, wrapDeg, write } from './words.js';
 
-/** A set-point is sent twice per simulated second: the helm uses it for 1.5 of them. */
+/** A set-point is sent twice per simulated second: the helm uses each for 1.5 simulated seconds. */
 const SEND_SIMULATED_MS = 500;
-/** Limits of the interval, whatever the speed of the game, ms. */
+/** Limits of the interval, at any game speed, ms. */
 const SEND_MIN_MS = 20;
 const SEND_MAX_MS = 200;
-/** Above this speed, a set-point expires before the next one can arrive, times real time. */
+/** Above this multiple of real time, a set-point expires before the next one can arrive. */
 const STEERED_MAX = 50;
 const TURN_DEG = 5;
 const SPEED_STEP_M_S = 0.25;
@@ -51,7 +51,7 @@ export class Drive {
     return this.vehicle !== null;
   }
 
-  /** Starts to drive a boat, at its heading and at rest. */
+  /** Starts to drive a boat, with its heading as the course and a speed of zero. */
   take(vehicle, heading_deg) {
     this.letGo();
     this.vehicle = vehicle.name;
@@ -95,7 +95,7 @@ export class Drive {
   }
 
   tick() {
-    // First, so that an error in drawing does not end the driving.
+    // Set the timer first, so that an error in drawing does not end the driving.
     this.timer = setTimeout(() => this.tick(), this.wait_ms);
     this.readStick();
     this.send({ do: 'drive', vehicle: this.vehicle, course_deg: this.course_deg, speed_m_s: this.speed_m_s });

@@ -15,7 +15,7 @@ const OUTLINE = '0';
 /** The side of the line from a to b on which a point lies. */
 const side = (a, b, at) => Math.sign((b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]));
 
-/** Whether two sides of a polygon cross that share no corner. */
+/** Whether two sides of a polygon cross, other than neighbours at their common corner. */
 export function crosses(corners) {
   const count = corners.length;
   for (let i = 0; i < count; i++) {
@@ -80,7 +80,7 @@ export class FenceEditor {
     return button;
   }
 
-  /** Takes another game: the drawing stays if the field has not moved. */
+  /** Switches to another game; keeps the drawing if the field has not moved. */
   greet(chart) {
     const datum = chart.field?.datum ?? null;
     if (JSON.stringify(datum) !== JSON.stringify(this.datum)) this.clear();

@@ -69,7 +69,7 @@ function drawZones(context, view, field) {
   }
 }
 
-/** The grid's lines: positions on the screen, px, and coordinates, m. On a turned chart, columns are lines of equal north. */
+/** The grid's lines: positions on the screen, px, and coordinates, m. On a turned chart, columns are lines of constant north coordinate. */
 function gridOf(view, step) {
   const corners = [view.placeOf(0, 0), view.placeOf(view.width, view.height)];
   const [xs, ys] = [0, 1].map((axis) => {
@@ -166,7 +166,7 @@ function drawCircles(context, view, chart) {
       context.stroke();
       context.setLineDash([]);
       context.globalAlpha = 1;
-      // With many boats they would clutter the chart.
+      // With many boats, labels would clutter the chart.
       if (px < 55 || chart.vehicles.length > WORDS_MAX) continue;
       context.font = '11px system-ui, sans-serif';
       haloText(context, `${word} ${number(metres, metres % 1 ? 1 : 0)} m`, view.xOf(flag.x, flag.y), view.yOf(flag.x, flag.y) - px - 2, palette.faint);

@@ -24,7 +24,7 @@ export const MARKS = [
 
 /** Frames farther apart than this are not interpolated, ms. */
 const GAP_MAX_MS = 600;
-/** Interpolation takes this much longer than the interval, so that a slightly late frame finds the boats still moving. */
+/** Interpolation lasts this many intervals between frames, so that a slightly late frame finds the boats still moving. */
 const STRETCH = 1.15;
 /** Frames closer together than this are not interpolated, ms. */
 const GAP_MIN_MS = 22;
@@ -41,7 +41,7 @@ const floats = (count) => new Float64Array(count);
 export class Game {
   constructor() {
     this.hello = null;
-    /** Counts games shown. */
+    /** The number of games shown so far. */
     this.greeted = 0;
     this.clear({ vehicles: [], teams: [], field: null });
   }
@@ -120,7 +120,7 @@ export class Game {
     if (this.frames > 0) this.keepWake();
   }
 
-  /** Adds a frame: `kind` is 1 for one to show and 2 for a past one. */
+  /** Adds a frame: `kind` is 1 for a frame to show and 2 for a past frame. */
   takeFrame(kind, buffer, now_ms) {
     if (!this.read) return;
     try {

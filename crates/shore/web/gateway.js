@@ -13,7 +13,7 @@ const BATTERY_OLD_S = 10;
 const STATES = [
   ['e-stopped', 'stopped', 'E-stopped', 'bad'], ['failsafe', 'failsafe', 'Failsafe', 'bad'], ['armed', 'armed', 'Armed', 'good'],
   ['delegated', 'delegated', 'Delegated', 'task'], ['disarmed', 'disarmed', 'Disarmed', 'plain'],
-  // In recordings of earlier versions.
+  // Only in recordings of earlier versions.
   ['safed', 'disarmed', 'Disarmed', 'plain'],
 ];
 
@@ -48,12 +48,12 @@ export function readStatus(game, index, now_ms) {
   };
 }
 
-/** Names and texts, and whether the value is old or bad. Short texts are for the list. */
+/** Values in words, with their names, and whether they are old or bad. `short` is for the list. */
 function factsOf(status, waited_s) {
   const later = (seconds) => (Number.isFinite(seconds) ? seconds + waited_s : NaN);
   const [fix_s, battery_s, mode_s] = [later(status.nav_age_s), later(status.battery_age_s), later(status.mode_age_s)];
   const facts = [{ name: 'Link', short: status.link === 'up' ? 'link up' : 'no link', words: status.link ?? '–', bad: status.link !== 'up' }];
-  // Faults of the boat itself stop nothing, but come first.
+  // The boat's own faults do not stop it, but come first.
   for (const words of status.alarms ?? []) facts.unshift({ name: 'Alarm', short: words.split(',')[0], words, bad: true });
   // In a dry run the boat is only sent standby, whatever its state.
   if (typeof status.would_send === 'string') {

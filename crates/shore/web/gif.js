@@ -1,4 +1,4 @@
-// An encoder for animated GIF files, as in the GIF89a specification: no library for browsers is maintained.
+// An encoder for animated GIF files, as in the GIF89a specification: no browser library for this is maintained.
 
 /** Codes of LZW with 8 bits per pixel: clear the table, end of the data. */
 const CLEAR = 256;
@@ -70,7 +70,7 @@ function compress(indices, table, out) {
   out.put(0);
 }
 
-/** The bin of a colour: five bits of each part. */
+/** The bin of a colour: five bits of each component. */
 const binOf = (data, i) => ((data[i] >> 3) << 10) | ((data[i + 1] >> 3) << 5) | (data[i + 2] >> 3);
 
 export class Gif {

@@ -1,4 +1,4 @@
-// What a live game has shown since the page was opened, as curves. A long game is thinned to every second sample, again and again.
+// What a live game has shown since the page was opened, as curves. A long game is thinned to every second sample, as often as necessary.
 
 const SAMPLES = 1200;
 /** Sampling interval at first, s. */

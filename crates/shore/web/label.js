@@ -7,7 +7,7 @@ const FONT = '600 12px system-ui, sans-serif';
 const HEIGHT = 18;
 /** Size of a cell for checking free space, px. */
 const CELL = 4;
-/** Positions of a name around its boat: beside, below, above and at the corners, as parts of its width, its height and its clearance. */
+/** Positions of a name around its boat: beside, below, above and at the corners, as fractions of its width, its height and its clearance. */
 const PLACES = [[0, -0.5, 1, 0], [-1, -0.5, -1, 0], [-0.5, 0, 0, 1], [-0.5, -1, 0, -1],
   [0, 0, 0.7, 0.7], [-1, 0, -0.7, 0.7], [0, -1, 0.7, -0.7], [-1, -1, -0.7, -0.7]];
 /** A wanted name may be this far away, in clearances, with a line to its boat. */

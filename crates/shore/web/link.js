@@ -50,11 +50,11 @@ export class Link {
     this.forget();
     setInterval(() => this.drawnUnseen(), HIDDEN_ACK_S * 1000);
     setInterval(() => this.watch(performance.now()), WATCH_S * 1000);
-    // Pasting an address with another token into the open page reloads nothing.
+    // Pasting an address with a different token into the open page reloads nothing.
     addEventListener('hashchange', () => token() !== this.secret && this.restart());
   }
 
-  /** Nothing received yet. */
+  /** Resets the state: nothing has been received yet. */
   forget() {
     this.mode = null;
     this.playing = false;
@@ -110,7 +110,7 @@ export class Link {
 
   /** Closes a connection that has been silent although messages are due. */
   watch(now_ms) {
-    // A page that slept or was busy received nothing either.
+    // A page that was asleep or busy has received nothing either.
     const slept = now_ms - this.watched_ms > 2 * WATCH_S * 1000;
     this.watched_ms = now_ms;
     if (slept) this.heard_ms = now_ms;

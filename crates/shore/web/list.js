@@ -84,7 +84,7 @@ export class BoatList {
     this.arrange();
   }
 
-  /** Shows the wanted boats of each team in the wanted order. */
+  /** Shows the filtered boats of each team in the chosen order. */
   arrange() {
     const { game, place } = this;
     const wanted = this.roster.tell(game, this.readings);

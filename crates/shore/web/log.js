@@ -44,7 +44,7 @@ export class Log {
     /** Whether the events are folded, by tab. */
     this.chosen = recallObject(FOLDED_KEY) ?? {};
     this.tab = 'boats';
-    // A low page has no space for both the events and a boat's helm.
+    // A short page has no space for both the events and a boat's helm.
     this.low = matchMedia('(max-height: 999px)');
     this.low.addEventListener('change', () => this.showFold());
     this.fold.addEventListener('click', () => {
@@ -114,7 +114,7 @@ export class Log {
 
   /** Scrolls to the newest event of a replay, unless someone is reading the list. */
   keepInSight(at) {
-    // Before the first event, the next one.
+    // Before the first event, scroll to the next one.
     const row = this.place.children[Math.min(this.lines.length - 1, Math.max(0, at))];
     if (!row || this.folded || this.place.matches(':hover, :focus-within')) return;
     const pane = this.place.closest('.pane');

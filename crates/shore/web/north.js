@@ -28,7 +28,7 @@ export class North {
     if (view.up_deg === this.up_deg) return;
     this.up_deg = view.up_deg;
     for (const dial of this.dials) dial.up_deg = view.up_deg;
-    // Angle by which arrows in texts turn.
+    // Angle by which arrows in text turn.
     document.body.style.setProperty('--turn', `${-view.up_deg}deg`);
   }
 }

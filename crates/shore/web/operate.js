@@ -173,7 +173,7 @@ export class Operate {
     if (!reading) return;
     tellBadge(this.badge, reading);
     write(this.cause, reading.detail);
-    // After the end of the game its server passes no commands on.
+    // After the end of the game its server does not forward commands.
     const live = game.mode === 'live' && reading.kind !== 'ended';
     const { operates, rights } = game.hello;
     show(this.row, live);
@@ -203,7 +203,7 @@ export class Operate {
     const { arm } = this.buttons;
     show(this.arming, live && !arm.hidden);
     const known = kind !== 'silent' && kind !== 'unknown';
-    const lines = !known ? ['a report of its gateway'] : missing.length > 0 ? missing : ['Ready to arm.'];
+    const lines = !known ? ['a report from its gateway'] : missing.length > 0 ? missing : ['Ready to arm.'];
     const good = known && missing.length === 0;
     this.unready = good ? '' : `Missing: ${lines.join('; ')}.`;
     arm.setAttribute('aria-disabled', String(!good));

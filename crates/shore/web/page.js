@@ -8,7 +8,7 @@
 //                                 carrying is the index of a flag, or -1
 //   flags                         [{ team, x, y, carrier }]: current positions; carrier is a boat's name, or null
 //   events                        all known; in a live game the newest 20000
-//   selected, following, driving  the boat's name or null; whether; the boat's name or null
+//   selected, following, driving  a boat's name or null; whether it is followed; a boat's name or null
 //   helm, estimate                of the selected boat, as sent; null if missing
 //   modes                         of all boats' helms, as sent; null before
 //   hulls, labels                 [{ name, left, top, right, bottom }]: areas of boats and names on the chart, px
@@ -68,13 +68,13 @@ import { WhatIf } from './what_if.js';
 import { expose } from './window.js';
 import { plain, show, write } from './words.js';
 
-/** Interval at which texts are written, ms. */
+/** Interval at which text is updated, ms. */
 const TELL_MS = 200;
 /** The same for the details of the selected boat. */
 const DETAILS_MS = 40;
 /** The same for the list of boats. */
 const LIST_EVERY = 3;
-/** A page without a game reports that after this time, ms. */
+/** Time after which a page without a game reports this, ms. */
 const MISSING_MS = 1500;
 /** The longest game, s. */
 const GAME_MAX_S = 86_400;
@@ -163,7 +163,7 @@ class Page {
     this.link.start();
     setInterval(() => this.tell(), TELL_MS);
     const loop = (now_ms) => {
-      // First, so that an error in one picture does not stop the next.
+      // Request the next picture first, so that an error in this one does not stop it.
       requestAnimationFrame(loop);
       this.draw(now_ms);
     };
@@ -358,7 +358,7 @@ class Page {
     if (vehicle === null && this.asked === '') return;
     if (!this.link.send({ do: 'select', vehicle, functions })) return;
     this.asked = key;
-    // Known data may stem from before the page was hidden.
+    // Known data may date from before the page was hidden.
     if (functions && isBare(this.game.helm?.report)) this.game.helm = null;
   }
 
@@ -459,7 +459,7 @@ class Page {
     if (this.game.hello) this.tell();
   }
 
-  /** Writes all texts that do not belong to a single frame. */
+  /** Writes all text that does not belong to a single frame. */
   tell() {
     const { game } = this;
     this.ticks += 1;
@@ -480,7 +480,7 @@ class Page {
     if (document.hidden) this.status.tellFrame(game);
   }
 
-  /** Writes the details for each new frame and report: at ten times real time the other texts would lag the chart by seconds. */
+  /** Writes the details for each new frame and report: at ten times real time the other text would lag the chart by seconds. */
   tellDetails(now_ms) {
     const { game } = this;
     if (game.selected === null || (game.frames === this.toldFrames && !this.due) || now_ms - this.told_ms < DETAILS_MS) return;
@@ -503,7 +503,7 @@ class Page {
   resize() {
     const { clientWidth, clientHeight } = this.sheet;
     this.ratio = Math.min(2, devicePixelRatio || 1);
-    // The sea sets its own size.
+    // The canvas of the sea sets its own size.
     for (const canvas of this.layers.slice(1)) {
       canvas.width = Math.max(1, Math.round(clientWidth * this.ratio));
       canvas.height = Math.max(1, Math.round(clientHeight * this.ratio));

@@ -55,7 +55,7 @@ export class Panels {
   /** The edge of a panel, which changes its size. */
   handle(panel) {
     const handle = make('div', `splitter splitter-${panel.axis.toLowerCase()}`);
-    Object.assign(handle, { tabIndex: 0, id: `${panel.id}-edge`, title: 'Drag to resize; double-click for the usual size' });
+    Object.assign(handle, { tabIndex: 0, id: `${panel.id}-edge`, title: 'Drag to resize; double-click for the default size' });
     handle.setAttribute('role', 'separator');
     handle.setAttribute('aria-label', `Size of the panel: ${panel.name}`);
     handle.setAttribute('aria-controls', panel.id);
@@ -105,7 +105,7 @@ export class Panels {
     this.apply(panel);
   }
 
-  /** Returns it to its usual size. */
+  /** Returns it to its default size. */
   reset(panel) {
     delete this.sizes[panel.id];
     this.store();

@@ -12,13 +12,13 @@ import { clock, clockShort, make, options, plain, show, write } from './words.js
 const NAMED_MAX = 8;
 /** Maximum number of samples drawn in a plot. */
 const SAMPLES_MAX = 16_000;
-/** A curve of many is pointed at within this, px. */
+/** Among many curves, the pointer selects the nearest within this distance, px. */
 const REACH_PX = 14;
 const FONT = '11px system-ui, sans-serif';
 const STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600];
 const NONE = '';
 
-/** Compass courses: no line passes north from one edge of the plot to the other. */
+/** For compass courses: breaks lines that would cross the whole plot where a course passes north. */
 function courses(plot, series, first, last) {
   const stroke = new Path2D();
   const [times, values] = [plot.data[0], plot.data[series]];
@@ -103,7 +103,7 @@ export class Plot {
     return { quantity: this.quantity.key, other: this.wantedOther };
   }
 
-  /** The other boat, by index; -1 without one. */
+  /** The other boat, by index; -1 if there is none. */
   otherOf(game) {
     return this.quantity.to ? game.indexOf.get(this.other.value) ?? -1 : -1;
   }
@@ -270,7 +270,7 @@ export class Plot {
     this.told = key;
     this.now.style.transform = `translateX(${now_px}px)`;
     const outside = pointed_s === null || pointed_s < span.from_s || pointed_s > span.to_s;
-    // In the plot under the pointer, the pointer moves it.
+    // In the plot under the pointer, the pointer moves the cursor.
     if (this.pointed === null) chart.setCursor({ left: outside ? -10 : x(pointed_s), top: outside ? -10 : 1 });
     this.tell(pointed_s ?? game.t_s);
   }

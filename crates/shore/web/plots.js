@@ -15,7 +15,7 @@ const DEFAULT = [{ quantity: 'speed_m_s' }, { quantity: 'heading_deg' }];
 const PLOTS_MAX = 6;
 /** Boats with their own colour. */
 const COLOURS = 8;
-/** In a live game, drawing takes at most one part in this many of the time. */
+/** Reciprocal of the maximum share of time that drawing takes in a live game. */
 const SHARE = 25;
 /** Minimum interval between drawings of new samples, ms. */
 const AGAIN_MS = 250;
@@ -124,7 +124,7 @@ export class Plots {
     return names.map((name) => game.indexOf.get(name)).filter((index) => index !== undefined);
   }
 
-  /** The first boat of a team has its colour, the others have more colours; in a crowd all have their team's. */
+  /** The first boat of a team has the team's colour, the others have further colours; in a crowd, all have their team's colour. */
   colours(game, boats) {
     const taken = new Set();
     let extra = game.chart.teams.length;

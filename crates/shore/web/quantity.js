@@ -33,7 +33,7 @@ export function rangeOf(source, boat, other) {
 
 /**
  * The samples from `from_s` to `to_s`, and one on either side, as `[times, ...lists]`; null where unknown. More than `most` are joined
- * into the least and the greatest of each group, so that peaks remain; courses keep every nth sample.
+ * into the minimum and the maximum of each group, so that peaks remain; courses keep every nth sample.
  */
 export function sectionOf(times, lists, from_s, to_s, most, round) {
   const first = Math.max(0, sampleAt(times, from_s));
@@ -57,7 +57,7 @@ export function sectionOf(times, lists, from_s, to_s, most, round) {
   return [xs, ...lists.map((list) => ends(list, []))];
 }
 
-/** The least and the greatest value in a group, in their order; null where unknown. */
+/** The minimum and the maximum value in a group, in their order; null where unknown. */
 function extremes(list, from, to) {
   let [low, high] = [-1, -1];
   for (let i = from; list && i < to; i++) {

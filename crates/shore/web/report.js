@@ -1,4 +1,4 @@
-// The page of a report. Texts from a report are only ever inserted as text.
+// The page of a report. Strings from a report are only ever inserted as text.
 
 import { Sweep } from './sweep.js';
 import { Theme } from './theme.js';

@@ -32,7 +32,7 @@ function rank(game, at) {
 }
 
 export class Roster {
-  /** `changed()` is called when another part of the fleet is wanted. */
+  /** `changed()` is called when a different part of the fleet is to be shown. */
   constructor(changed) {
     this.changed = changed;
     this.state = '';
@@ -85,7 +85,7 @@ export class Roster {
     show(this.element, game.count > FEW);
   }
 
-  /** Counts the boats, and returns a function that checks whether a boat is wanted. `readings` are those of real boats. */
+  /** Counts the boats, and returns a function that checks whether a boat is to be shown. `readings` are those of real boats. */
   tell(game, readings) {
     const real = new Map(readings.map(({ index, label }) => [index, label]));
     const states = [...STATES, ...[...new Set(real.values())].sort().map((label) => [label, (_, at) => real.get(at) === label])];

@@ -62,7 +62,7 @@ export class Sea {
     this.heights = new Float32Array(across * down);
   }
 
-  /** Sums the components. Along a row each is a rotating pointer, which costs four products per cell and no cosine. */
+  /** Sums the components. Along a row, each is a rotating phasor, which costs four multiplications per cell and no cosine. */
   sum(view, t_s, cell, across, down) {
     const heights = this.heights.fill(0);
     const cell_m = cell / view.scale;

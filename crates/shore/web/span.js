@@ -2,7 +2,7 @@
 
 /** Minimum length of a section, s. */
 const LEAST_S = 2;
-/** Where the moment enters a section that follows it, as a part of the section. */
+/** Position of the moment in a section that has moved to follow it, as a fraction of the section's length. */
 const ENTER = 0.1;
 
 export class Span {
@@ -15,7 +15,7 @@ export class Span {
   forget() {
     this.whole = [0, LEAST_S];
     this.shown = null;
-    /** The moment pointed at, s; null without one. */
+    /** The moment pointed at, s; null if there is none. */
     this.pointed_s = null;
     this.version += 1;
   }
@@ -43,7 +43,7 @@ export class Span {
     else if (this.shown) this.show(...this.shown);
   }
 
-  /** Shows a section, within the game; the whole game if it is as long. */
+  /** Shows a section, within the game, or the whole game if the section is as long. */
   show(from_s, to_s) {
     const [first_s, last_s] = this.whole;
     const length_s = Math.max(LEAST_S, to_s - from_s);

@@ -96,7 +96,7 @@ export class Status {
     this.tellMiddle(`No game to show: ${reason}.\nTo start one, type this in a terminal: ${START}\nIt will appear here automatically.`);
   }
 
-  /** Shows a text in the middle of the chart; one with a command can be copied. */
+  /** Shows a message in the middle of the chart; one with a command can be copied. */
   tellMiddle(words) {
     const over = byId('over');
     write(over, words);

@@ -7,7 +7,7 @@ const DEAD_ZONE = 0.18;
 /** Some devices report non-finite numbers. */
 const axis = (value) => (Number.isFinite(value) ? value : 0);
 
-/** All devices that may have a stick. If there is a standard gamepad, pedals and tilt sensors do not count. */
+/** All devices that may have a stick. If there is a standard gamepad, pedals and tilt sensors are ignored. */
 function pads() {
   const all = [...(navigator.getGamepads?.() ?? [])].filter((pad) => pad?.connected && pad.axes.length >= 2);
   const standard = all.filter((pad) => pad.mapping === 'standard');
@@ -25,7 +25,7 @@ export class Stick {
     this.held = null;
   }
 
-  /** The stick's current command: `{ course_deg, out }`; `{ out: 0, gone }` once when it is released; null without one. */
+  /** The stick's current command: `{ course_deg, out }`; `{ out: 0, gone }` once when it is released; null if there is none. */
   read() {
     const all = pads();
     const names = all.map((pad) => pad.name);

@@ -1,6 +1,6 @@
 // Settings of this browser. Some browsers store nothing; a setting then lasts as long as the page.
 
-/** The stored text, or null. */
+/** The stored string, or null. */
 export function recall(key) {
   try {
     return localStorage.getItem(key);
@@ -18,12 +18,12 @@ export function recallObject(key) {
   }
 }
 
-/** Stores a text; null removes it. */
+/** Stores a string; null removes it. */
 export function keep(key, text) {
   try {
     if (text === null) localStorage.removeItem(key);
     else localStorage.setItem(key, text);
   } catch {
-    // Not stored.
+    // The setting is not stored.
   }
 }

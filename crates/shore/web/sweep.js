@@ -7,7 +7,7 @@ import { palette } from './palette.js';
 import { scrolled, tableOf } from './table.js';
 import { make, plain, significant, stem, svg } from './words.js';
 
-/** Constant parts. Texts of a report only ever become text nodes. */
+/** Constant parts. Strings from a report only ever become text nodes. */
 const SECTIONS = `
   <dl id="sweep-facts"></dl>
   <div class="bar">
@@ -142,7 +142,7 @@ const words = (name) => name.replace(UNIT_SUFFIX, '').split('_').map((word) => S
 /** The parts of an axis's title, from its key and from its meaning in the reference, such as `Mean speed at 10 m height, m/s.` */
 function titleOf(key, meaning) {
   const [kind, ...path] = key.split('.');
-  // A key of a file needs no file in its title; a link or a fault does.
+  // The title of a key omits its kind of file, but not `link` or `fault`.
   const parts = path.length > 0 && ['sea', 'boat', 'rules', 'game', 'field', 'strategy'].includes(kind) ? path.filter((part) => part !== 'behaviour') : [kind, ...path];
   const sentence = (meaning ?? '').replace(/^Instead of [^:]*: /, '').split(/\. |\.$/)[0];
   const suffix = UNIT_SUFFIX.exec(key)?.[1];
@@ -221,7 +221,7 @@ function digitsFor(axis) {
 const effectOf = (axis, entry) => report.effects[axis * report.entries.length + entry];
 const levelsOf = (axis) => effectOf(axis, 0)?.levels ?? [];
 const isSampled = () => report.design === 'sobol' || report.design === 'latin_hypercube';
-/** The axes without those of a single level, which are settings and have no effect. */
+/** The axes with more than one level: those with one are settings and have no effect. */
 function variedAxes() {
   const all = report.axes.map((_, axis) => axis);
   const varied = all.filter((axis) => levelsOf(axis).length !== 1);
@@ -369,7 +369,7 @@ function domainOf(estimates) {
   return [low === 0 ? 0 : Math.max(floor, low - margin), high + margin];
 }
 
-/** Unevenness of numbers: their standard deviation divided by their mean. */
+/** The coefficient of variation of numbers: their standard deviation divided by their mean. */
 function unevenness(numbers) {
   const mean = numbers.reduce((sum, each) => sum + each, 0) / numbers.length;
   return Math.sqrt(numbers.reduce((sum, each) => sum + (each - mean) ** 2, 0) / numbers.length) / Math.abs(mean);
@@ -397,7 +397,7 @@ function widthOf(text, size = 12.5) {
   return ruler.measureText(text).width;
 }
 
-/** A text limited to this width, with its middle omitted if necessary: names often differ at their ends. */
+/** A string limited to this width, with its middle omitted if necessary: names often differ at their ends. */
 function shortened(text, wide) {
   if (widthOf(text) <= wide) return text;
   const without = (kept) => `${text.slice(0, Math.ceil(kept / 2))}…${text.slice(text.length - Math.floor(kept / 2))}`;
@@ -408,7 +408,7 @@ function shortened(text, wide) {
 
 /* Curves */
 
-/** Slant of labels, rad, and their maximum length then. */
+/** Slant of labels, rad, and the maximum length of slanted labels. */
 const SLANT = 0.7;
 const SLANTED_MAX = 150;
 
@@ -491,7 +491,7 @@ function drawCurve(axis, card, width) {
   const ticks = ticksOf(low, high, 5);
   const [right, top, deep] = [22, 10, 220];
   const { kind, places } = placesOf(levels);
-  // The first of slanted names reaches to the left.
+  // The first slanted name extends to the left.
   const first = kind === 'categories' ? Math.min(widthOf(labels[0]), SLANTED_MAX) * Math.cos(SLANT) - (0.5 * wide) / labels.length : 0;
   const left = Math.max(LEFT_LABEL_MIN, Math.min(first, 0.22 * wide), ...ticks.map((tick) => widthOf(shown(tick)) + 12));
   const inset = kind === 'categories' ? 0 : 14;
@@ -772,7 +772,7 @@ function drawTornado() {
 
 const PAGE_ROWS = 20;
 
-/** The rows of the current page, and buttons to the others if any. */
+/** The rows of the current page, and buttons for the others, if any. */
 function paged(name, rows, redraw, size = PAGE_ROWS) {
   const pages = Math.max(1, Math.ceil(rows.length / size));
   const page = Math.min(pages - 1, state.pages[name] ?? 0);

@@ -21,7 +21,7 @@ const LEFT = 34;
 const RIGHT = 14;
 /** Rows of marks, one for each kind, above the score, px. */
 const LANE_TOP = 8;
-/** The largest and the least height of a row. */
+/** The maximum and the minimum height of a row, px. */
 const LANE = 9;
 const LANE_LOW = 4;
 /** Height of a timeline without its rows, px: the score, its space and the times. */
@@ -34,7 +34,7 @@ const STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1200, 3600];
 const ZOOM = 2;
 /** A change of the moment by more than this is a jump, s. */
 const JUMP_S = 2;
-/** Jumping back skips an event that was just reached, s. */
+/** Jumping back skips an event reached less than this long ago, s. */
 const STICK_S = 0.05;
 
 function drawShape(context, shape, x, y, r) {

@@ -14,7 +14,7 @@ const LEAP_M = 6;
 const PIECES_MAX = 9000;
 /** Trails of up to this many boats are drawn at full opacity. */
 const CLEAR = 30;
-/** Ages at which a trail fades, as parts of its length, and its opacities. */
+/** Ages at which a trail fades, as fractions of its length, and its opacities. */
 const BANDS = [[0, 0.2, 0.8], [0.2, 0.5, 0.45], [0.5, 1, 0.2]];
 
 export class Trails {
@@ -57,7 +57,7 @@ export class Trails {
     this.speeds[this.head * this.count + boat] = speed;
   }
 
-  /** Calls `visit(age, speed)` for the samples of a boat, newest first; ages are parts of a trail's length. */
+  /** Calls `visit(age, speed)` for the samples of a boat, newest first; ages are fractions of a trail's length. */
   eachSpeed(boat, now_s, visit) {
     for (let back = 0; back < this.kept; back++) {
       const row = this.row(back);

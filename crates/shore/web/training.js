@@ -38,7 +38,7 @@ function duration(s) {
 const millions = (samples) => number(samples / MILLION, 2);
 const perSecond = (rate) => `${rate < 10 ? rate.toPrecision(2) : Math.round(rate).toLocaleString('en')} samples/s`;
 
-/** A run as its page needs it. */
+/** A run, prepared for its page. */
 class Run {
   constructor(report, style) {
     Object.assign(this, report, { style });

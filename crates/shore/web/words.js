@@ -1,4 +1,4 @@
-// Formats numbers and positions, and writes texts to the page only when they change.
+// Formats numbers and positions, and writes text to the page only when it changes.
 
 const said = new WeakMap();
 

@@ -11,7 +11,8 @@ pub struct Conditions {
     pub jitter: Duration,
     /// Fraction of published messages that a congested link drops.
     pub loss: f64,
-    /// Fraction of published messages that arrive damaged, from 0 to 1, and the kind of damage.
+    /// Fraction of published messages that arrive corrupted, from 0 to 1, and the kind of
+    /// corruption.
     pub damaged: (f64, Damage),
     /// A link closes if one side receives nothing from the other for this long.
     pub lease: Duration,
@@ -24,7 +25,7 @@ pub struct Conditions {
     pub pause: Duration,
 }
 
-/// How messages are damaged.
+/// How messages are corrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {
     /// Truncated, which a length check detects.

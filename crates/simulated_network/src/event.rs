@@ -29,7 +29,8 @@ pub(crate) enum Event {
         up: bool,
         arrival: u64,
     },
-    /// One end of a link has received nothing for the lease, if the link is unchanged since.
+    /// One end of a link has received nothing for the duration of the lease, provided that the link
+    /// has not changed since.
     LeaseOver {
         link: usize,
         at_hub: bool,
@@ -46,7 +47,7 @@ pub(crate) enum Event {
     },
 }
 
-/// A time in ns, limited to about five centuries.
+/// A time in ns, capped at about five centuries.
 pub(crate) fn nanos(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -86,8 +86,8 @@ impl State {
 
     /// Forwards a message to all leaves that have subscribed.
     fn forward(&mut self, hub: usize, key: &Arc<str>, bytes: &Arc<[u8]>, from: Option<usize>) {
-        // Never back over the incoming link, and once per link, however many subscribers are behind
-        // it, as in zenoh.
+        // Never forward over the incoming link, and forward once per link, however many subscribers
+        // are behind it, as in zenoh.
         let mut to = self.declared_beyond(hub, Kind::Subscriber, key, from);
         to.dedup_by_key(|(link, _)| *link);
         for (link, _) in to {

@@ -59,8 +59,8 @@ impl SimulatedNetwork {
             on_take: None,
             verdict: Verdict::Ended,
             ends: vec![],
-            // With fixed keys, unlike `RandomState`: two runs with one seed are compared by this
-            // number.
+            // Use fixed keys, unlike `RandomState`: this number is compared between two runs with
+            // one seed.
             hash: DefaultHasher::new(),
             lines: None,
         };

@@ -189,7 +189,7 @@ impl World {
 
     fn await_turn(&self, me: usize) {
         while self.running.load(Ordering::Acquire) != me {
-            // In a loop, because `park` may return spuriously.
+            // Loop, because `park` may return spuriously.
             thread::park();
         }
     }
@@ -209,7 +209,8 @@ impl World {
             let calls = std::mem::take(&mut state.calls);
             let to_drop = std::mem::take(&mut state.to_drop);
             drop(state);
-            // Dropping these may send a message, which would deadlock while the state is locked.
+            // Dropping these declarations may send a message, which would deadlock while the state
+            // is locked.
             drop(to_drop);
             IN_CALLBACK.set(true);
             calls.into_iter().for_each(|call| call());
@@ -319,7 +320,7 @@ impl State {
     /// Ends the simulation: kills every node and clears all events.
     fn give_up(&mut self, verdict: Verdict) {
         self.verdict = verdict;
-        // Kills all nodes instead of leaving them waiting, so that their threads end and the test
+        // Kill all nodes instead of leaving them waiting, so that their threads end and the test
         // can report what they were waiting for.
         self.events.clear();
         self.starts_due = 0;

@@ -40,9 +40,9 @@ pub(crate) struct Thread {
     pub(crate) node: usize,
     pub(crate) handle: Option<JoinHandle<()>>,
     pub(crate) status: Status,
-    /// Whether it will unwind when it continues.
+    /// Whether the thread will unwind when it continues.
     pub(crate) is_killed: bool,
-    /// Number of times it has waited.
+    /// Number of times that the thread has waited.
     pub(crate) waits: u64,
 }
 
@@ -81,7 +81,7 @@ pub(crate) struct State {
     pub(crate) limit_ns: u64,
     /// The number of the last event scheduled.
     pub(crate) order: u64,
-    /// By time and number: by time alone, one seed could give two different traces.
+    /// Ordered by time and number: by time alone, one seed could give two different traces.
     pub(crate) events: BTreeMap<(u64, u64), Event>,
     pub(crate) starts_due: usize,
     pub(crate) nodes: Vec<Node>,

@@ -33,8 +33,8 @@ pub struct Published<'a> {
     pub at: Duration,
     /// The node that publishes or receives it.
     pub node: &'a str,
-    /// Its key.
+    /// The message's key.
     pub key: &'a str,
-    /// Its content.
+    /// The message's content.
     pub bytes: &'a [u8],
 }

@@ -22,6 +22,6 @@ pub use measure::{Measure, measures};
 pub use orders::{LONGEST_S, Orders};
 pub use replay::{ROW, Unsound, replay, ticks_per_row};
 pub use sample::{COLUMNS, Sample, write_csv};
-pub use sheet::{Mistake, Sheet};
+pub use sheet::{Mistake, Sheet, plain_head};
 pub use trial_boat::{Start, TrialBoat};
 pub use water::{open_field, set_mean_current, still_sea};

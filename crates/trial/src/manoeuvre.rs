@@ -28,7 +28,7 @@ pub enum Manoeuvre {
     CrashStop,
     /// Full ahead from rest, until the speed is steady.
     Acceleration,
-    /// No thrust, in whatever sea there is.
+    /// No thrust, in the given sea.
     Drift,
     /// From rest, port full ahead and starboard full astern (kinematic: thrust 50 and full rudder).
     Spin,

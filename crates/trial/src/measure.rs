@@ -231,7 +231,7 @@ fn drift(sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// Rates and drift in the second half; the drift is that of the mean position, turn by turn.
+/// Rates and drift in the second half; the drift is that of each turn's mean position.
 fn spin(sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let middle = sailed.samples.len() / 2;

@@ -42,9 +42,10 @@ pub struct Mistake {
 }
 
 impl Sheet {
-    /// Reads a file whose name in messages is `file`.
+    /// Reads a file; `file` is its name in messages.
     ///
-    /// # Errors If it is not a table, has no rows, or has two columns with the same name.
+    /// # Errors
+    /// If it is not a table, has no rows, or has two columns with the same name.
     pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
         let mut bytes = vec![];
         let whole = |message| Mistake {
@@ -144,6 +145,16 @@ impl Sheet {
         self.heads.iter().position(|known| known == head)
     }
 
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The line of a row in the file.
+    pub fn line(&self, row: usize) -> Option<u64> {
+        self.rows.get(row).map(|(line, _)| *line)
+    }
+
     /// The content of a row and column; the row must exist.
     pub fn text(&self, row: usize, column: usize) -> &str {
         self.rows[row].1.get(column).unwrap_or_default()
@@ -234,7 +245,7 @@ impl Sheet {
     /// The times in column `t_s`, strictly increasing, from 0 to `high_s`.
     ///
     /// # Errors
-    /// If they do not satisfy this.
+    /// If they are not strictly increasing, or out of this range.
     pub fn times(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
         self.times_from(high_s, |_| 0.0)
     }
@@ -317,7 +328,7 @@ fn separator(bytes: &[u8]) -> u8 {
 }
 
 /// A normalised column name: `Port (rad/s)` is `port_rad_s`.
-fn plain_head(head: &str) -> String {
+pub fn plain_head(head: &str) -> String {
     let joined = words(head.trim_start_matches('\u{feff}'));
     for side in ["port", "starboard"] {
         if let Some(unit) = joined

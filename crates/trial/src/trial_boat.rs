@@ -86,7 +86,7 @@ impl TrialBoat {
         self.world.state().now
     }
 
-    /// Makes the boat's present position the origin of positions from now on.
+    /// Makes the boat's current position the origin of positions from now on.
     pub fn set_origin(&mut self) {
         self.origin = self.pose().at;
     }
@@ -137,7 +137,7 @@ impl TrialBoat {
         }
     }
 
-    /// The settings of its two thrusters, or thrust and rudder in per cent.
+    /// The settings of the boat's two thrusters, or thrust and rudder in per cent.
     pub fn settings(&self) -> [f64; 2] {
         let state = self.world.state();
         match state.points.first() {

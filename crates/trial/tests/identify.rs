@@ -53,14 +53,26 @@ fn orders_csv(stream: &mut Stream) -> String {
     text + "245,0,0\n"
 }
 
-/// A log of `boat` under those commands, with `noise` times [`NOISE`].
-fn log_csv(boat: &Boat, orders_csv: &str, noise: f64, stream: &mut Stream) -> String {
+/// A log of `boat` under those commands, with `noise` times [`NOISE`], whose correlation from one
+/// row to the next is `correlation`.
+fn log_csv(
+    boat: &Boat,
+    orders_csv: &str,
+    noise: f64,
+    correlation: f64,
+    stream: &mut Stream,
+) -> String {
     let sheet = Sheet::read("orders.csv", orders_csv.as_bytes()).expect("it is CSV");
     let orders = Orders::of_sheet(&sheet, &Engine::new(boat)).expect("it understands them");
     let mut trial_boat = TrialBoat::new(boat, &trial::still_sea(), TICK, 1, &Start::default());
     let mut samples = trial::replay(&mut trial_boat, &orders, orders.end()).expect("it sails");
+    let mut errors = NOISE.map(|sigma| noise * sigma * stream.normal());
+    let fresh = (1.0 - correlation * correlation).sqrt();
     for sample in &mut samples {
-        let [x, y, heading, surge, sway, yaw] = NOISE.map(|sigma| noise * sigma * stream.normal());
+        for (error, sigma) in errors.iter_mut().zip(NOISE) {
+            *error = correlation * *error + fresh * noise * sigma * stream.normal();
+        }
+        let [x, y, heading, surge, sway, yaw] = errors;
         (sample.at.east, sample.at.north) = (sample.at.east + x, sample.at.north + y);
         sample.psi_rad += heading.to_radians();
         sample.nu = sim::hull::Planar {
@@ -106,7 +118,7 @@ fn known_parameters_come_back_within_their_stated_confidence() {
         let orders = orders_csv(&mut stream);
         let fit = fitted(
             &wrong(&truth),
-            &log_csv(&truth, &orders, 1.0, &mut stream),
+            &log_csv(&truth, &orders, 1.0, 0.0, &mut stream),
             &[],
         )
         .unwrap_or_else(|e| panic!("{e}"));
@@ -116,7 +128,7 @@ fn known_parameters_come_back_within_their_stated_confidence() {
             let off = (estimate.value - want).abs() / estimate.plus_minus;
             let name = estimate.parameter.name;
             assert!(
-                estimate.plus_minus < 0.2 * want,
+                estimate.plus_minus < 0.35 * want,
                 "seed {seed}: {name} ± {}",
                 estimate.plus_minus
             );
@@ -141,11 +153,31 @@ fn known_parameters_come_back_within_their_stated_confidence() {
     assert!(within >= 31, "{within} of {all} within their 95 %");
 }
 
+/// The errors of receivers and compasses last for seconds. Intervals for white noise then contain
+/// less than half of the true values.
+#[test]
+fn intervals_hold_for_errors_that_last() {
+    let truth = boat();
+    let mut within = 0;
+    for seed in 11..=16 {
+        let mut stream = Stream::new(seed, "test");
+        let orders = orders_csv(&mut stream);
+        let csv = log_csv(&truth, &orders, 1.0, 0.95, &mut stream);
+        let fit = fitted(&wrong(&truth), &csv, &[]).unwrap_or_else(|e| panic!("{e}"));
+        for estimate in &fit.estimates {
+            let want = estimate.parameter.value(&truth).expect("it has it");
+            within += i32::from((estimate.value - want).abs() <= estimate.plus_minus);
+        }
+    }
+    // 95 % of 54 is 51; fewer than 46 would occur with a probability of one in a hundred.
+    assert!(within >= 46, "{within} of 54 within their 95 %");
+}
+
 #[test]
 fn without_noise_they_come_back_to_four_places() {
     let truth = boat();
     let mut stream = Stream::new(9, "test");
-    let csv = log_csv(&truth, &orders_csv(&mut stream), 0.0, &mut stream);
+    let csv = log_csv(&truth, &orders_csv(&mut stream), 0.0, 0.0, &mut stream);
     let fit = fitted(&wrong(&truth), &csv, &[]).unwrap_or_else(|e| panic!("{e}"));
     for estimate in &fit.estimates {
         let want = estimate.parameter.value(&truth).expect("it has it");
@@ -163,7 +195,7 @@ fn what_the_log_cannot_tell_is_said() {
     let truth = boat();
     // Straight ahead at one speed, thrust and resistance cannot be separated.
     let straight = "t_s,port_pct,starboard_pct\n0,60,60\n120,60,60\n";
-    let csv = log_csv(&truth, straight, 1.0, &mut Stream::new(1, "test"));
+    let csv = log_csv(&truth, straight, 1.0, 0.0, &mut Stream::new(1, "test"));
     let fit = fitted(
         &truth,
         &csv,

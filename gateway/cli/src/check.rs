@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// How long it listens without and with a pre-flight check, s.
+/// How long to listen, without and with a pre-flight check, s.
 const LISTEN_S: [f64; 2] = [10.0, 30.0];
 /// Maximum length of a displayed sentence or message, characters.
 const LAST_MAX: usize = 90;
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             counted(check)
         );
     }
-    // Before the search for the game, because the search takes time.
+    // Read the clocks before the search for the game, which takes time.
     let host = HostTime {
         now: listener.now(),
         utc_ns: utc::now_ns(),

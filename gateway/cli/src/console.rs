@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// Number of attempts after which the session itself may be broken.
 const ATTEMPTS: u64 = 20;
-/// The same timeouts as the page.
+/// The timeouts that the page uses.
 const PATIENCE: Patience = Patience {
     silence: Duration::from_secs(5),
     missing: Duration::from_secs(1),

@@ -13,7 +13,7 @@ pub fn to_connect(text: &str) -> Result<LinkAddress, String> {
 /// Parses an address to listen on.
 ///
 /// # Errors
-/// As above.
+/// The fault and the addresses allowed.
 pub fn to_listen(text: &str) -> Result<LinkAddress, String> {
     LinkAddress::to_listen(text).map_err(without_address)
 }

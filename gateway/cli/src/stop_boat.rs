@@ -19,7 +19,7 @@ use std::time::Duration;
 
 /// Interval between stop commands.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Minimum duration of sending, because single sentences may be lost.
+/// Minimum time to keep sending: single sentences may be lost.
 const SAY: Duration = Duration::from_millis(500);
 /// Timeout for a gateway that holds the link.
 const ANSWER: Duration = Duration::from_secs(1);
@@ -42,7 +42,7 @@ pub struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let address = args.link.clone();
-    // A gateway that holds the link would keep driving its boat.
+    // Ask the gateway that holds the link first: otherwise it would keep driving its boat.
     if stopped_by_its_gateway(&address) {
         return Ok(ExitCode::SUCCESS);
     }

@@ -179,7 +179,7 @@ fn control_address(text: &str) -> Result<SocketAddr, String> {
     let address = address(text)?;
     if address.ip().is_unspecified() {
         return Err(
-            "expected an address at which operators reach this machine, not all of its addresses"
+            "expected the address at which operators reach this machine, not 0.0.0.0 or [::]"
                 .to_owned(),
         );
     }

@@ -154,8 +154,8 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     ) {
         return Check::not_done(name, "skipped");
     }
-    // Whether the boat reports its operator, whether the operator is the remote control, and thrust
-    // ahead and astern.
+    // Whether the boat has reported its operator, whether that was the remote control, and whether
+    // thrust ahead and astern was seen.
     let mut tells = false;
     let mut by_remote = false;
     let mut seen = [false; 2];

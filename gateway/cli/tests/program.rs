@@ -102,7 +102,7 @@ impl Boat {
         Boat::sending(|| b"$PSEAG,N*22\r\n".to_vec())
     }
 
-    /// One that sends these bytes ten times a second.
+    /// A boat that sends these bytes ten times a second.
     fn sending(bytes: impl Fn() -> Vec<u8> + Send + 'static) -> Boat {
         let (sender, received) = channel();
         let take = move |event| {
@@ -212,7 +212,7 @@ fn a_boat_is_checked_by_a_gateway_file_inside_of_the_program() {
 
 #[test]
 fn a_full_disk_is_reported_at_once_and_at_the_end() {
-    // Numbers that do not repeat, because the recording is compressed.
+    // Use numbers that do not repeat, because the recording is compressed.
     let boat = Boat::sending(|| {
         (0..250)
             .map(|_| Token::random().hex())
@@ -230,7 +230,7 @@ fn a_full_disk_is_reported_at_once_and_at_the_end() {
         "--link",
         &link,
     ]);
-    // A file of 200 kB is this process's full disk.
+    // A file size limit of 200 kB imitates a full disk.
     let limited = "trap '' XFSZ; ulimit -f 400; exec \"$@\"";
     let mut shell = Command::new("sh");
     shell

@@ -42,7 +42,7 @@ fn near_place(ours: Option<LatLon>, lat_deg: Option<f64>, lon_deg: Option<f64>) 
     );
 }
 
-/// The same to within the rounding of a floating-point second.
+/// Whether two times are equal to within the rounding of a floating-point second.
 fn same_time(ours: Option<TimeOfDay>, theirs: Option<chrono::NaiveTime>) {
     let ms = |time: chrono::NaiveTime| {
         f64::from(time.num_seconds_from_midnight()) * 1e3 + f64::from(time.nanosecond()) / 1e6
@@ -148,7 +148,7 @@ fn sentence() -> impl Strategy<Value = Sentence> {
         day_ms: 0..86_400_000,
     };
     standard_sentences(&domain).prop_filter_map("the crate needs it", |sentence| match sentence {
-        // It computes one speed from the other.
+        // The crate computes one speed from the other.
         Sentence::Vtg(v) => Some(Sentence::Vtg(Vtg {
             speed_km_h: Some(v.speed_kn? * 1.852),
             ..v

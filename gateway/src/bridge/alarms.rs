@@ -9,28 +9,28 @@ use crate::set_point::SetPoint;
 use primitives::SimTime;
 use primitives::angle::wrap_pi;
 
-/// Thrust order from which a thruster must draw a current, per cent.
+/// Minimum thrust order at which a thruster must draw a current, per cent.
 const ORDERED_MIN_PCT: f64 = 20.0;
 /// Order of the sides in all arrays: port first.
 const SIDES: [&str; 2] = ["port", "starboard"];
 
-/// Roll or pitch from which a boat may have capsized, degrees; waves do not hold it there ...
+/// Minimum roll or pitch (degrees) at which a boat may have capsized.
 const TILT_MAX_DEG: f64 = 60.0;
-/// ... for this long, s.
+/// How long the tilt must last, s: waves do not hold a boat at this angle for so long.
 const TILT_S: f64 = 3.0;
 
 /// A fault that counts only after a minimum duration.
 #[derive(Clone, Copy, Debug, Default)]
 struct Alarm {
-    /// When the current fault began, and its latest size.
+    /// When the fault in progress began, and its latest value.
     since: Option<(SimTime, f64)>,
     /// Whether the fault has outlasted the debounce time and has been reported.
     is_told: bool,
 }
 
 impl Alarm {
-    /// Records the size of the current fault, if any. Returns `text` as a warning once the fault
-    /// has lasted for `debounce_s`, and a remark with its name when it ends.
+    /// Records the value of the fault in progress, if any. Returns `text` as a warning once the
+    /// fault has lasted for `debounce_s`, and a remark with its name when it ends.
     fn note(
         &mut self,
         now: SimTime,
@@ -38,8 +38,8 @@ impl Alarm {
         debounce_s: f64,
         (text, name): (impl Fn(f64) -> String, &str),
     ) -> Option<Event> {
-        // Keep the time of the first report and the latest size, so that the warning follows the
-        // pump during the debounce time.
+        // Keep the time of the first report and the latest value, so that the warning states the
+        // value after the debounce time.
         self.since = size.map(|size| (self.since.map_or(now, |(since, _)| since), size));
         let lasts = self
             .since
@@ -52,7 +52,7 @@ impl Alarm {
         }
     }
 
-    /// The size of a fault that has been reported.
+    /// The value of a fault that has been reported.
     fn told(&self) -> Option<f64> {
         self.since.filter(|_| self.is_told).map(|(_, size)| size)
     }
@@ -144,8 +144,8 @@ impl Alarms {
     ) {
         let ordered = command.and_then(ordered_pct);
         // An alarm, not a failsafe: the accuracy of these currents is not published, and a boat
-        // stopped for a faulty sensor drifts. They can become failsafes when boats have shown what
-        // is normal.
+        // stopped for a faulty sensor drifts. They can become failsafes once it is known what is
+        // normal.
         for wrong in WRONGS {
             for side in [0, 1] {
                 let amps = self.found(wrong, side, power, ordered);

@@ -5,7 +5,7 @@ use crate::lithium;
 use crate::protocol::Power;
 use primitives::SimTime;
 
-/// Silence of the battery before a warning, s.
+/// Time without a battery report before a warning, s.
 pub(super) const SILENCE_S: f64 = 10.0;
 
 /// The latest battery reports.
@@ -23,7 +23,7 @@ pub(super) struct BatteryLog {
 }
 
 impl BatteryLog {
-    /// No data yet: the link is new.
+    /// A log without data, for a new link.
     pub(super) fn new(watch: BatteryWatch, now: SimTime) -> BatteryLog {
         BatteryLog {
             watch,

@@ -18,7 +18,7 @@ const SAME_HEADING_DEG: f64 = 1.1;
 /// recovers in between, someone else is sending it standby.
 const DEPARTURES: usize = 2;
 const DEPARTURES_S: f64 = 5.0;
-/// Time for which foreign orders count after they were seen, s.
+/// Time (s) for which foreign orders count after they were seen.
 const FOREIGN_MEMORY_S: f64 = 5.0;
 /// Capacity for sent commands: 20 a second for the longest echo delay of a boat.
 const SENT_MAX: usize = 640;
@@ -106,7 +106,7 @@ impl CommandEcho {
         self.foreign_at = Some(now);
     }
 
-    /// Checks a report of the boat; called only while we command it.
+    /// Checks a report from the boat; called only while we command it.
     pub(super) fn observe(&mut self, now: SimTime, mut shown: Shown) {
         // A boat that has never echoed a nonzero heading may report 0 for all headings.
         shown.heading_deg = shown
@@ -132,7 +132,7 @@ impl CommandEcho {
         if is_same_mode {
             self.unlike_since.get_or_insert(now);
         }
-        // Only a boat that has echoed our set-points can be found to echo a foreign one.
+        // Only if the boat has echoed our set-points can an unknown echo be judged foreign.
         let knows = if is_same_mode {
             self.has_shown_set_point
         } else {
@@ -156,8 +156,8 @@ impl CommandEcho {
     }
 
     /// Whether thrust and difference lie between the last reported and the last sent values, as on
-    /// a boat that reports the applied thrust, which lags, instead of the commanded one. Set-points
-    /// of another gateway jump.
+    /// a boat that reports the applied thrust, which lags, instead of the commanded one. Another
+    /// gateway's set-points would jump.
     fn is_on_its_way(&self, shown: &Shown) -> bool {
         let Some(last) = self
             .last
@@ -211,8 +211,8 @@ mod tests {
         }
     }
 
-    /// The verdict when the boat shows these thrusts, ten a second, after commands of 20 % and then
-    /// 60 %.
+    /// The verdict when the boat reports these thrusts, ten a second, after commands of 20 % and
+    /// then 60 %.
     fn found(shows: &[f64]) -> (bool, bool) {
         let mut echo = CommandEcho::new(crate::config::default_gateway().control);
         let at = |tenth: usize| SimTime::from_s(0.1 * tenth as f64);

@@ -35,8 +35,9 @@ impl Bridge {
             } = site;
             (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
             if let Some((nav, _)) = estimator.nav(now) {
-                // Use the faster of reported and measured speed at once: a log stuck at zero would
-                // otherwise let the boat run into the fence before the instrument check finds it.
+                // Use the faster of reported and measured speed at once: otherwise, with a log
+                // stuck at zero, the boat could cross the fence before the instrument check finds
+                // the fault.
                 inside = geofence.is_inside(
                     now,
                     nav.at(),

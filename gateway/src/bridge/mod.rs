@@ -45,7 +45,7 @@ use std::collections::VecDeque;
 
 /// Minimum interval between two new orders, s.
 const GAP_MIN_S: f64 = 0.045;
-/// Time after which a task that the boat does not report is sent again, s.
+/// Time (s) after which a task that the boat does not report is sent again.
 const TASK_AGAIN_S: f64 = 1.0;
 /// Interval between reports of invalid navigation, s.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
@@ -204,7 +204,7 @@ impl Bridge {
         self.report_nav(now, out);
     }
 
-    /// The latest time of the next call.
+    /// The time by which the bridge must be called again.
     pub fn due(&self, now: SimTime) -> SimTime {
         let period = self.period();
         let coming = |at: SimTime| if at > now { at } else { now + period };

@@ -33,7 +33,7 @@ impl OnSite {
             ..
         } = gateway;
         let frame = LocalFrame::new(site.field.plan.datum);
-        // Correction that turns a heading of the boat into a true heading, rad.
+        // Correction from the boat's headings to true headings, rad.
         let compass_to_true_rad = match (protocol, compass) {
             (BoatProtocol::Surveyor, CompassFrame::Magnetic) => site.declination_rad,
             // MAVLink boats report and receive true headings.

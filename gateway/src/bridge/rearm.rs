@@ -8,7 +8,7 @@ const STEADY_S: f64 = 1.0;
 
 /// Watches orders and failsafes.
 pub(super) struct Rearm {
-    /// Time after a failsafe within which the boat may rearm itself, s.
+    /// Time (s) after a failsafe within which the boat may rearm itself.
     within_s: f64,
     pub(super) failsafe_at: SimTime,
     /// Start of the current period of fresh orders.

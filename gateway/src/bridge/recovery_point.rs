@@ -4,8 +4,7 @@
 use crate::nmea::{Mode, Operator};
 use crate::protocol::ControlReport;
 
-/// Maximum distance of a reported home from our recovery point for them to be the same, degrees:
-/// one metre.
+/// Maximum distance (degrees) at which a reported home counts as our recovery point: one metre.
 const HOME_DEG: f64 = 9e-6;
 
 /// Progress of the boat's recovery point.
@@ -15,7 +14,7 @@ pub(super) enum RecoveryPoint {
     #[default]
     Unknown,
     /// The mission with the point is being uploaded: latitude and longitude, degrees, and whether
-    /// the boat has shown that it accepts lines.
+    /// the boat has reported that it accepts lines.
     Uploading([f64; 2], bool),
     /// The boat has accepted the point (latitude and longitude in degrees).
     Taken([f64; 2]),

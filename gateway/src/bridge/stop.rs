@@ -8,7 +8,7 @@ impl Bridge {
     /// The shutdown message, sent before the link closes: zero thrust, then standby.
     pub fn shutdown_message(&self) -> Vec<u8> {
         let mut message = Vec::new();
-        // Use a copy: the guard's message is regenerated repeatedly, without side effects.
+        // Use a copy: the guard's message is regenerated repeatedly, and must have no side effects.
         let mut protocol = self.protocol.clone();
         if self.plan.dry_run {
             protocol.write(SimTime::ZERO, Command::Standby, &mut message);

@@ -7,7 +7,7 @@ use rules::field::{distance_to_line, sides};
 use scenario::{Document, check_corners, check_thrust_map};
 
 /// Maximum distance of a geofence corner from the first, m. Corners farther away have latitude and
-/// longitude exchanged, or an extra digit.
+/// longitude swapped, or an extra digit.
 const EXTENT_MAX_M: f64 = 50_000.0;
 /// A sphere is accurate enough to detect crossing sides.
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
@@ -18,7 +18,7 @@ pub(super) fn gateway(document: &Document<Gateway>) -> Option<Gateway> {
     check_thrust_map(document, "loops.thrust_map", &raw.loops.thrust_map);
     check_geofence(document);
     if raw.protocol == BoatProtocol::Mavlink && !raw.startup_words.is_empty() {
-        let message = "startup_words are a Surveyor's, expected none with protocol = \"mavlink\"";
+        let message = "startup_words are for Surveyors, expected none with protocol = \"mavlink\"";
         document.note("startup_words", message);
     }
     document.is_faultless().then(|| raw.clone())

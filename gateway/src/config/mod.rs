@@ -1,7 +1,7 @@
 //! How a gateway drives a real boat, and when it stops it.
 //!
-//! Everything is SI except in the units of the boat's sentences: thrust is in per cent of full
-//! ahead. These types also declare the keys of gateway files, like those in [`scenario::boat`].
+//! Units are SI, except where the boat's sentences use others: thrust is in per cent of full ahead.
+//! These types also declare the keys of gateway files, like those in [`scenario::boat`].
 
 mod check;
 
@@ -45,7 +45,7 @@ pub struct Gateway {
     pub nav: NavWatch,
     /// The area that the boat must not leave.
     pub geofence: Geofence,
-    /// The box ahead in which another real boat stops this one.
+    /// The box ahead of the boat; another real boat inside it stops this one.
     pub halt: Halt,
     /// Low battery.
     pub battery: BatteryWatch,
@@ -100,13 +100,13 @@ pub enum BoatProtocol {
 /// Identities on a MAVLink network, and the meaning of a thrust difference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Mavlink {
-    /// The boat's system, 1 to 255; 0: the first boat heard.
+    /// The boat's system ID, 1 to 255; 0: first boat heard.
     #[schemars(range(min = 0, max = 255), extend("default" = 0))]
     pub boat_system: u8,
-    /// The gateway's system, which ArduPilot's ground station failsafe watches.
+    /// The gateway's system ID, which ArduPilot's ground station failsafe watches.
     #[schemars(range(min = 1, max = 255), extend("default" = 255))]
     pub system: u8,
-    /// The gateway's component.
+    /// The gateway's component ID.
     #[schemars(range(min = 1, max = 255), extend("default" = 190))]
     pub component: u8,
     /// Rate of turn for a thrust difference of 100 %, rad/s.
@@ -116,7 +116,7 @@ pub struct Mavlink {
     pub turn_rate_max_rad_s: f64,
 }
 
-/// Whose loops steer.
+/// Whose loops control the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Drive {
@@ -182,7 +182,7 @@ pub struct Limits {
     /// Maximum thrust difference, %.
     #[schemars(range(min = 1, max = 100), extend("default" = 50))]
     pub difference_max_pct: f64,
-    /// Maximum increase of either, %/s; decreases are immediate.
+    /// Maximum rate of increase of thrust and difference, %/s; decreases are immediate.
     #[schemars(range(min = 1, max = 10000), extend("default" = 100))]
     pub slew_pct_s: f64,
 }
@@ -218,15 +218,16 @@ pub struct Geofence {
     /// Default: the field's rectangle plus `margin_m`.
     #[schemars(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180))))]
     pub polygon: Option<Vec<[f64; 2]>>,
-    /// Polygons inside the geofence that the boat must not enter, nor be unable to stop before.
+    /// Polygons inside the geofence that the boat must not enter, and must be able to stop short
+    /// of.
     #[schemars(length(max = 50))]
     #[schemars(inner(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180)))))]
     pub keep_out: Vec<Vec<[f64; 2]>>,
     /// Margin around the field without a `polygon`, m.
     #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
-    /// Measured stopping distances at zero thrust: pairs of speed through water in m/s and distance
-    /// in m. They replace `deceleration_m_s2`.
+    /// Measured stopping distances at zero thrust: pairs of speed through water (m/s) and distance
+    /// (m). They replace `deceleration_m_s2`.
     #[schemars(with = "Vec<SpeedAndDistance>", length(max = 50), extend("default" = Vec::<f64>::new()))]
     pub coast_m: Vec<(f64, f64)>,
     /// Deceleration at zero thrust, m/s². The resistance in the boat file is used instead where it
@@ -278,7 +279,7 @@ pub struct BatteryWatch {
     pub cells: u8,
 }
 
-/// Currents reported by the boat. They raise alarms only, since their accuracy is not published.
+/// Currents reported by the boat. They only raise alarms: their accuracy is unpublished.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurrentWatch {
     /// Maximum thruster current, A; 0: off. A fouled propeller draws more.
@@ -311,8 +312,8 @@ pub struct FailsafeActions {
     /// The gateway hung.
     #[schemars(extend("default" = "standby"))]
     pub hung: FailsafeAction,
-    /// Time after a failsafe for lack of fresh orders within which the boat arms itself again, once
-    /// orders have been fresh for 1 s and it is ready, s; 0: never.
+    /// After a failsafe for lack of fresh orders: time within which the boat may rearm itself, s,
+    /// once orders have been fresh for 1 s and the boat is ready; 0: never.
     #[schemars(range(min = 0, max = 600), extend("default" = 0))]
     pub rearm_within_s: f64,
 }
@@ -333,7 +334,7 @@ pub enum FailsafeAction {
 /// How the gateway verifies that it controls the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlWatch {
-    /// Assume control, for boats that never report it.
+    /// Whether to assume control, for boats that never report it.
     #[schemars(extend("default" = false))]
     pub assumed: bool,
     /// Maximum age of the boat's report of who is in control, s.
@@ -342,7 +343,7 @@ pub struct ControlWatch {
     /// Time within which the boat must echo a command, s.
     #[schemars(range(min = 0.2, max = 30), extend("default" = 1.5))]
     pub echo_s: f64,
-    /// Maximum difference between shown and sent thrust, %; 200: off.
+    /// Maximum difference between echoed and sent thrust, %; 200: off.
     #[schemars(range(min = 1, max = 200), extend("default" = 2))]
     pub echo_thrust_pct: f64,
 }
@@ -386,8 +387,8 @@ pub struct Loops {
     #[schemars(rename = "heading_pct_per_deg", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "heading_pct_per_rad", "default" = 0.9))]
     pub heading_pct_per_rad: f64,
-    /// Thrust difference against the rate of turn, % per rad/s.
-    #[schemars(description = "Thrust difference against the rate of turn, % per degree/s.")]
+    /// Thrust difference opposing the rate of turn, % per rad/s.
+    #[schemars(description = "Thrust difference opposing the rate of turn, % per degree/s.")]
     #[schemars(rename = "turn_pct_per_deg_s", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "turn_pct_per_rad_s", "default" = 1.4))]
     pub turn_pct_per_rad_s: f64,

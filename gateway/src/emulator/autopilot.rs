@@ -7,7 +7,7 @@ use primitives::frame::{Ned, Pose};
 use primitives::math;
 use std::collections::BTreeMap;
 
-/// Distance within which a position counts as reached or kept, m.
+/// Distance (m) within which a position counts as reached or kept.
 const NEAR_M: f64 = 3.0;
 /// Maximum speed of a boat returning to its station, m/s.
 const KEEP_M_S: f64 = 1.0;
@@ -155,7 +155,7 @@ impl Autopilot {
         go(pose, place, speed_m_s).unwrap_or(Order::Hold)
     }
 
-    /// Goes to the recovery point and stays there; without one, stays at its position.
+    /// Goes to the recovery point and stays there; without one, stays where it is.
     pub(super) fn go_to_erp(&mut self, pose: Pose) -> Order {
         match self.places.get(&0) {
             Some(erp) => go(pose, *erp, self.speed_m_s()).unwrap_or(Order::Hold),

@@ -5,7 +5,7 @@ use crate::lithium;
 use messages::Order;
 use primitives::SimTime;
 
-/// Maximum step, s; after a longer one, the sim was away.
+/// Maximum time step, s; a longer one means that the sim was away.
 const STEP_MAX_S: f64 = 10.0;
 
 /// The properties of a battery and its consumers.
@@ -24,7 +24,7 @@ pub(super) struct Pack {
 }
 
 impl Pack {
-    /// The Surveyor's: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats
+    /// The Surveyor's battery: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats
     /// reported 24.8 V with 15433 of 57741 left, which matches seven lithium cells at that charge
     /// if the count is in mAh.
     pub(super) const SURVEYOR: Pack = Pack {
@@ -34,7 +34,8 @@ impl Pack {
         system_a: 1.3,
         thruster_w: 1000.0,
     };
-    /// Like a BlueBoat's: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about 250 W.
+    /// A pack like a BlueBoat's: two lithium batteries of 14.8 V and 18 Ah, and thrusters of about
+    /// 250 W.
     pub(super) const BLUEBOAT: Pack = Pack {
         cells: 4.0,
         capacity_ah: 36.0,
@@ -57,7 +58,7 @@ pub(super) struct Battery {
     /// Current of each thruster, port first, A.
     pub(super) thruster_a: [f64; 2],
     at: Option<SimTime>,
-    /// The voltage shown regardless of the charge, V.
+    /// The voltage reported regardless of the charge, V.
     pub(super) shown_v: Option<f64>,
 }
 
@@ -92,7 +93,7 @@ impl Battery {
         let order = if self.left > 0.0 { order } else { Order::Hold };
         let rest_v = self.rest_v();
         // Use the voltage at rest, not under load: a loop through the resistance would need
-        // iterations to gain a few per cent.
+        // iteration, for a few per cent of accuracy.
         self.thruster_a = powers(order).map(|share| share * self.pack.thruster_w / rest_v);
         order
     }
@@ -102,7 +103,7 @@ impl Battery {
         self.pack.system_a + self.thruster_a[0] + self.thruster_a[1]
     }
 
-    /// Its voltage under load, V.
+    /// The voltage under load, V.
     pub(super) fn volts(&self) -> f64 {
         self.shown_v
             .unwrap_or_else(|| self.rest_v() - self.amps() * self.pack.resistance_ohm)
@@ -129,7 +130,7 @@ fn powers(order: Order) -> [f64; 2] {
     let of_speed = |speed_m_s: f64| {
         let share = (speed_m_s / full_m_s).clamp(0.0, 1.0);
         // Power is proportional to the cube of the speed at this thrust, so at 40 % thrust the
-        // battery lasts far longer than 2.5 times as long.
+        // battery lasts far more than 2.5 times as long.
         share * share * share
     };
     match order {

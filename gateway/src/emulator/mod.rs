@@ -39,7 +39,8 @@ pub struct Plan {
     pub declination_rad: f64,
     /// Time without a command after which the boat goes to standby, s; `None` means never.
     pub watchdog_s: Option<f64>,
-    /// Whether a non-integer set-point leaves the previous one in force, as in one known stand-in.
+    /// Whether the boat ignores non-integer set-points and keeps the previous one, as one known
+    /// stand-in does.
     pub integers: bool,
     /// Sentences in addition to a Surveyor's.
     pub extra: Vec<Extra>,
@@ -110,7 +111,7 @@ impl Emulator {
         }
     }
 
-    /// Makes the battery show this voltage from now on, V.
+    /// Makes the battery report this voltage from now on, V.
     pub fn set_volts(&mut self, volts: f64) {
         self.battery.shown_v = Some(volts);
     }
@@ -185,8 +186,8 @@ impl Emulator {
     }
 
     /// The primary operator takes control with any command. The word `OP2_ON` gives control to the
-    /// secondary operator, `OP2_OFF` takes it away. Both are our own: the real console's are not
-    /// public.
+    /// secondary operator, `OP2_OFF` takes it away. Both words are our own: those of the real
+    /// console are not public.
     fn take_primary(&mut self, now: SimTime, sentence: &Sentence) {
         let Sentence::Command(command) = sentence else {
             return;
@@ -241,7 +242,7 @@ impl FrontSeat for Emulator {
     }
 
     fn receive(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
-        // Move it out during use: sentences change the rest of the emulator.
+        // Move the framer out while it is in use: sentences change the rest of the emulator.
         let mut framer = std::mem::take(&mut self.framers[port as usize]);
         framer.push(bytes, &mut |body| {
             // Unknown sentences are ignored.
@@ -267,8 +268,8 @@ impl FrontSeat for Emulator {
     fn order(&mut self, now: SimTime) -> Order {
         let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
         let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
-        // Only if a file enables it: it is not published whether Surveyors have a watchdog, and a
-        // gateway that is safe without one is also safe with one.
+        // The watchdog runs only if a file enables it: it is not published whether Surveyors have
+        // one, and a gateway that is safe without a watchdog is also safe with one.
         if silent && self.command.mode != Mode::Standby {
             self.command = Command::default();
         }

@@ -20,11 +20,11 @@ const GRAVITY_M_S2: f64 = 9.80665;
 /// its loops so much that it considers its GPS receiver too slow.
 const RATE_MAX_HZ: u16 = 1200;
 const RATE_MIN_HZ: u16 = 50;
-/// Lag behind the simulation beyond which the firmware gets steps of twice the length, s.
+/// Lag behind the simulation (s) beyond which the firmware gets steps of twice the length.
 const BEHIND_S: f64 = 0.3;
-/// Lag beyond which it skips to the present, s.
+/// Lag (s) beyond which the firmware skips to the present.
 const LOST_S: f64 = 2.0;
-/// Time without servo outputs after which the thrusters stop, s.
+/// Time (s) without servo outputs after which the thrusters stop.
 const SILENT_S: f64 = 1.0;
 
 /// Number of channels in the largest datagram.
@@ -66,7 +66,7 @@ impl Servos {
 struct Outputs {
     /// Steps per second that the firmware requests.
     rate_hz: u16,
-    /// Number of the step. It repeats when a reply was lost, and starts again with the firmware.
+    /// Number of the step. Repeated if a reply was lost; restarts with the firmware.
     step: u32,
     /// Pulse widths by channel, µs; 0 means no pulse.
     pulses_us: [u16; CHANNELS],
@@ -96,7 +96,7 @@ impl Outputs {
     }
 }
 
-/// North, east, down (m); roll, pitch, yaw (rad), the yaw without jumps.
+/// North, east, down (m); roll, pitch, yaw (rad), with the yaw unwrapped.
 type Coordinates = [f64; 6];
 
 /// A boat's true motion at one moment.
@@ -139,8 +139,8 @@ impl Moment {
         Moment { at, value, rate }
     }
 
-    /// Values, rates and accelerations at a time between two moments, from the cubics with the
-    /// values and rates of both.
+    /// Values, rates and accelerations at a time between two moments, from the cubics that match
+    /// the values and rates of both.
     fn between(from: &Moment, to: &Moment, at: SimTime) -> [Coordinates; 3] {
         let span = (to.at - from.at).as_s();
         let u = (at - from.at).as_s() / span;
@@ -231,7 +231,7 @@ pub struct Sitl {
     clock: Option<(SimTime, SimTime)>,
     /// Last servo outputs, and the newest moment when they arrived.
     outputs: Option<(Outputs, SimTime)>,
-    /// Whether the firmware waits for a reply.
+    /// Whether the firmware is waiting for a reply.
     waits: bool,
     remarks: VecDeque<String>,
     is_silent: bool,
@@ -295,7 +295,7 @@ impl Sitl {
         }
         let moment = Moment::new(at, truth, before);
         self.moments.push_back(moment);
-        // Nor keep motion that a slow firmware will skip.
+        // Discard motion that is past, or that slow firmware will skip.
         let skipped = at - SimTime::from_s(2.0 * LOST_S);
         let done = self.clock.map_or(at, |(now, _)| now.max(skipped));
         while self.moments.len() > 2 && self.moments[1].at <= done {
@@ -312,7 +312,8 @@ impl Sitl {
         }
     }
 
-    /// The reply that the firmware waits for, once the simulation has reached that time.
+    /// The reply that the firmware waits for, once the simulation has reached the time of the
+    /// reply.
     pub fn reply(&mut self) -> Option<String> {
         let newest = self.moments.back()?.at;
         let (outputs, _) = self

@@ -86,7 +86,7 @@ impl FixReport {
             talker: Talker::GP,
             time: Some(self.time),
             at: self.at,
-            // Surveyors show DGPS (2) with about eleven satellites in the public samples.
+            // In the public samples, Surveyors report DGPS (2) with about eleven satellites.
             quality: if self.at.is_some() { 2 } else { 0 },
             satellites: Some(if self.at.is_some() { 11 } else { 0 }),
             hdop: self.at.map(|_| 0.98),
@@ -179,7 +179,7 @@ fn battery(battery: &super::battery::Battery, now: SimTime) -> Battery {
 
 fn control_state(boat: &Emulator) -> ControlState {
     // Without a commanded heading, the boat reports its own: in public samples, PSEAD in mode T
-    // shows the boat's heading.
+    // contains the boat's heading.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
     let has = || {
         boat.sensed
@@ -187,7 +187,7 @@ fn control_state(boat: &Emulator) -> ControlState {
             .as_ref()
             .map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad))
     };
-    // As executed by the boat: limited to full thrust, except for a speed.
+    // Report the command as executed: limited to full thrust, except for a speed.
     let is_speed = boat.command.mode == Mode::Speed;
     let clamped = |number: Option<f64>| {
         number.map(|number| {

@@ -8,7 +8,7 @@ use rules::field::{Field, distance_to_outline, do_meet, is_within, sides};
 use scenario::{Scenario, StartPosition};
 use thiserror::Error;
 
-/// Angle step for drawing a round corner, degrees; cuts off less than half a per cent of the
+/// Angle step for drawing a rounded corner, degrees; cuts off less than half a per cent of the
 /// margin.
 const ROUND_STEP_DEG: f64 = 90.0 / 8.0;
 
@@ -52,8 +52,8 @@ impl GeofenceArea {
         }
     }
 
-    /// Checks that the area suits the game: it must contain the keep-outs and the boat's start
-    /// position.
+    /// Checks that the area suits the game: the keep-outs must overlap it, and the boat's start
+    /// position must be inside.
     ///
     /// # Errors
     /// [`GeofenceError`] names the part outside.
@@ -94,7 +94,7 @@ impl GeofenceArea {
             && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
     }
 
-    /// Whether a boat may be everywhere on the straight line between two points. The ends alone are
+    /// Whether all of the straight line between two points is permitted water. The ends alone are
     /// not enough: the outline may be concave, and a keep-out may lie between them.
     pub(crate) fn contains_way(&self, from: Ned, to: Ned) -> bool {
         self.contains(from) && self.leads_in(from, to)
@@ -136,16 +136,16 @@ fn met(polygon: &[Ned], from: Ned, to: Ned) -> usize {
 }
 
 /// The points in a rectangle or within this distance of it, clockwise on the chart: a rectangle
-/// with round corners.
+/// with rounded corners.
 fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
     if margin_m <= 0.0 {
         return corners.to_vec();
     }
-    // Round corners, because a margin is a distance: at square corners it would be 1.4 times as
-    // large.
+    // The corners are rounded because a margin is a distance: at square corners it would be 1.4
+    // times as large.
     let round = |[before, corner, after]: [Ned; 3]| {
-        // From the normal of the side that ends at the corner to that of the next side, a quarter
-        // turn clockwise.
+        // The arc runs from the normal of the side that ends at the corner to that of the next
+        // side, a quarter turn clockwise.
         let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {
             let side = b - a;
             let length_m = a.distance(b);

@@ -5,13 +5,14 @@ use primitives::{SimTime, math};
 use scenario::boat::{Boat, Drive};
 use serde::{Deserialize, Serialize};
 
-/// Speed through the water below which a boat is at rest and only drifts, m/s.
+/// Speed through the water (m/s) below which a boat counts as at rest and only drifts.
 const REST_M_S: f64 = 0.1;
 /// Time step of the prediction, s.
 const STEP_S: f64 = 0.25;
 /// Steps per straight leg.
 const STEPS_PER_LEG: u32 = 4;
-/// Minimum time for which drift counts, s: a boat stays inside for this long after a stop.
+/// Minimum time for which drift is predicted, s: a boat must stay inside for this long after a
+/// stop.
 const DRIFT_S: f64 = 20.0;
 /// Fractions of drift and turn by which the boat may deviate from the prediction: with these, no
 /// approach in `tests/geofence` crosses the fence.
@@ -21,7 +22,8 @@ const TURN_SLACK: f64 = 0.7;
 const VEER_RAD: f64 = 0.1;
 /// Drift that cannot be observed under way, m/s.
 const LEEWAY_M_S: f64 = 0.2;
-/// The speed falls more slowly than the thruster setting, at most by this factor.
+/// The speed falls more slowly than the thruster setting, but at no less than this fraction of its
+/// rate.
 const SLEW_SHARE: f64 = 0.75;
 /// Maximum duration of the prediction, s.
 const LONGEST_S: f64 = 60.0;
@@ -29,9 +31,9 @@ const LONGEST_S: f64 = 60.0;
 const RECENT_S: f64 = 5.0;
 /// Averaging time of the lasting drift, s.
 const LASTING_S: f64 = 20.0;
-/// Time constant of drift that does not last, s; side slip ends with a turn.
+/// Decay time of transient drift, s: side slip ends with a turn.
 const DECAY_S: f64 = 4.0;
-/// Gap between orders after which the estimate restarts, s.
+/// Gap between orders (s) after which the estimate restarts.
 const GAP_MAX_S: f64 = 1.5;
 /// Maximum turn of a boat while it coasts, rad.
 const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_2;
@@ -51,10 +53,9 @@ pub struct Coasting {
     pub deceleration_m_s2: f64,
     /// The steady speed at full thrust, m/s.
     pub speed_max_m_s: f64,
-    /// Rate at which thrust falls, as a fraction of full thrust per second, and the delay before it
-    /// starts, s.
+    /// Rate at which thrust falls, as a fraction of full thrust per second.
     pub slew_per_s: f64,
-    /// See `slew_per_s`.
+    /// Delay before thrust starts to fall, s.
     pub lag_s: f64,
     /// Time constant of turning, s.
     pub yaw_s: f64,
@@ -76,8 +77,8 @@ impl Coasting {
                 yaw_s: (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2)
                     / hull.yaw_linear_kg_m2_s.max(1e-6),
             },
-            // A kinematic boat decelerates at half of its limit (see `sim::kinematic`); 0 means
-            // none.
+            // A kinematic boat decelerates at half its limit (see `sim::kinematic`); 0 means no
+            // limit.
             Drive::Kinematic(kinematic) => Coasting {
                 mass_kg: 1.0,
                 linear_kg_s: 0.0,
@@ -100,7 +101,7 @@ impl Coasting {
         let longer = |(speed_m_s, distance_m): &(f64, f64)| {
             distance_m / self.distance_m(*speed_m_s).max(1e-3)
         };
-        // Time and distance of coasting are proportional to the mass.
+        // Coasting time and distance are proportional to mass.
         let factor = measured.iter().map(longer).fold(0.0, f64::max);
         match factor {
             0.0 => self,
@@ -184,7 +185,7 @@ impl Coasting {
             if t_s > until_fall_s {
                 thrust_m_s = self.fallen_thrust(thrust_m_s, 0.0, STEP_S);
                 let change = self.resistance_m_s2(thrust_m_s) - self.resistance_m_s2(speed_m_s);
-                // A boat slower than its thrust allows first gains speed.
+                // A boat slower than the steady speed of its thrust first gains speed.
                 let decelerated = if thrust_m_s > 0.0 {
                     0.0
                 } else {
@@ -237,7 +238,7 @@ pub(super) struct Leg {
 pub(super) struct Glide {
     /// Velocity through the water, m/s.
     pub(super) water_m_s: Ned,
-    /// Velocity of the water plus that caused by the wind, m/s.
+    /// Velocity of the water plus the drift caused by the wind, m/s.
     pub(super) drift_m_s: Ned,
     /// Additional drift that decays, m/s: a boat slips sideways in a turn.
     pub(super) transient_m_s: Ned,
@@ -258,11 +259,11 @@ pub(super) struct DriftEstimate {
     at: Option<SimTime>,
     /// Duration of the observation, s.
     lasted_s: f64,
-    /// Surge through the water according to the boat file, and the steady speed of the thrust, m/s.
+    /// Surge speed through the water according to the boat file, m/s.
     surge_m_s: f64,
     /// The steady speed of the current thrust, m/s.
     pub(super) thrust_m_s: f64,
-    /// The means over a short and a long time, m/s.
+    /// Mean drift over a short time and a long time, m/s.
     pub(super) recent_m_s: Ned,
     pub(super) drift_m_s: Ned,
 }
@@ -313,7 +314,7 @@ impl DriftEstimate {
         self.drift_m_s = towards(self.drift_m_s, LASTING_S);
     }
 
-    /// Whether the latest orders have been observed.
+    /// Whether the estimate includes recent orders.
     pub(super) fn is_fresh(&self, now: SimTime) -> bool {
         self.at.is_some_and(|at| (now - at).as_s() <= GAP_MAX_S)
     }

@@ -17,10 +17,10 @@ use rules::field::Field;
 /// Time from the end of the debounce time to zero thrust at the boat, s: a tick, the link, the
 /// boat's own cycle.
 const COMMAND_S: f64 = 0.5;
-/// Time for which the path must be free to end a breach by drift, s.
+/// Time (s) for which the path must be clear before a breach by drift ends.
 const BREACH_ENDS_S: f64 = 2.0;
 
-/// Checks that a boat is inside the geofence and can stop inside.
+/// Checks that a boat is inside the geofence and can stop there.
 #[derive(Clone, Debug)]
 pub struct GeofenceWatch {
     /// Where the boat may be.
@@ -43,7 +43,7 @@ struct Breach {
 
 impl Breach {
     /// Whether the path is sound, or has been unsound for less than `debounce_s`. A breach ends
-    /// after more than `ends_s` of sound paths.
+    /// when paths have been sound for more than `ends_s`.
     fn is_well(&mut self, now: SimTime, is_sound: bool, (debounce_s, ends_s): (f64, f64)) -> bool {
         if is_sound {
             self.between = self
@@ -93,8 +93,8 @@ impl GeofenceWatch {
             path.iter().all(|leg| {
                 let end = at + leg.end;
                 let start = std::mem::replace(&mut from, end);
-                // Slack adds up in a turn: far from the edge it exceeds the distance that the boat
-                // can travel.
+                // Slack adds up in a turn until it exceeds the distance that the boat can travel,
+                // so far from the edge that distance is enough.
                 room_m > leg.reach_m
                     || self.area.contains_way(start, end)
                         && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
@@ -104,7 +104,7 @@ impl GeofenceWatch {
             self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_sound);
         let is_drift_sound = self.drifting_path(now, motion).iter().all(is_sound);
         // A single fix scattered across the fence is not a breach. In waves a boat yaws, and its
-        // path to rest swings with it, so a momentarily free path does not end a breach.
+        // path to rest swings with it, so a momentarily clear path does not end a breach.
         let is_well = [
             self.straight
                 .is_well(now, is_straight_sound, (self.rules.debounce_s, 0.0)),
@@ -114,8 +114,7 @@ impl GeofenceWatch {
         is_well == [true; 2]
     }
 
-    /// The paths to rest that must be free, from the boat's position: straight on, as in still
-    /// water, ...
+    /// The straight paths to rest that must be clear, as in still water, from the boat's position.
     fn straight_paths(&self, velocity_m_s: Ned) -> Vec<Vec<Leg>> {
         let Geofence {
             deceleration_m_s2,
@@ -124,9 +123,9 @@ impl GeofenceWatch {
         } = &self.rules;
         let speed_m_s = velocity_m_s.length();
         let reaction_s = self.reaction_s();
-        // v t + v²/2a: valid without a boat file, and above all at high speed. Water resistance
-        // falls with the speed, so below 2 m/s boats coast farther than with any single
-        // deceleration.
+        // v t + v²/2a: needs no boat file, and is most accurate at high speed. Water resistance
+        // falls with speed, so below 2 m/s boats coast farther than any constant deceleration
+        // predicts.
         let braked = velocity_m_s.scaled(reaction_s + speed_m_s / (2.0 * deceleration_m_s2));
         let braked = Leg {
             end: braked,
@@ -152,7 +151,7 @@ impl GeofenceWatch {
         paths
     }
 
-    /// ... and with the observed drift and turn.
+    /// The path to rest that must be clear, with the observed drift and turn.
     fn drifting_path(
         &self,
         now: SimTime,

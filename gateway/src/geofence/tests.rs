@@ -141,7 +141,7 @@ fn typed(field: &Field, corners: &[Ned]) -> Vec<[f64; 2]> {
     corners.iter().map(place).collect()
 }
 
-/// A star around a point: concave, and without crossings for any radii.
+/// A star around a point: concave, and its sides do not cross, whatever the radii.
 fn star(centre: Ned, radii_m: &[f64]) -> Vec<Ned> {
     let step_deg = 360.0 / radii_m.len() as f64;
     radii_m

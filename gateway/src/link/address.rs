@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 /// Supported speeds of a serial line, baud.
-// The serial speed and format of a Surveyor are not published. These are common for NMEA devices,
-// 8N1. RTK receivers use the faster ones, and autopilots' telemetry ports use 921600.
+// The serial speed and format of a Surveyor are not published. These speeds, with 8N1, are common
+// for NMEA devices. RTK receivers use the faster ones, and autopilots' telemetry ports use 921600.
 const BAUDS: [u32; 9] = [
     4800, 9600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 921_600,
 ];

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// Minimum time over which a good connection receives bytes. The waits keep growing for a peer that
+/// Minimum time for which a good connection receives bytes. The waits keep growing for a peer that
 /// accepts and closes at once, or that dies after one line.
 pub(super) const STEADY: Duration = Duration::from_secs(1);
 

@@ -186,7 +186,7 @@ fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
     let (socket, _) = udp_server::bind((&at.host, at.port))?;
     let start = clock::now();
     while clock::since(start) < CONNECT && !threads.is_stopped() {
-        // Only peek: the connection reads this datagram first.
+        // Only peek: the connection will read this datagram first.
         match socket.peek_from(&mut [0]) {
             Ok((_, from)) => {
                 socket.connect(from)?;

@@ -135,7 +135,7 @@ impl Drop for Connection {
 fn write_on(peer: &Peer, threads: &Threads) {
     let mut settled_at = clock::now();
     while let Some(request) = peer.outbox.next() {
-        // Bytes that should have been sent long ago are waiting on a stalled line.
+        // Earlier bytes should have been sent long ago; if any are left, the line has stalled.
         if request.priority() != Priority::Normal && clock::since(settled_at) >= SETTLED {
             peer.port.discard_unsent();
         }
@@ -147,8 +147,8 @@ fn write_on(peer: &Peer, threads: &Threads) {
         {
             Ok(Wrote::All) => {
                 let at = clock::now();
-                // Report it after the system has accepted the last byte, to measure the latency of
-                // orders.
+                // Report the write after the system has accepted the last byte, to measure the
+                // latency of orders.
                 if let Some(tag) = request.settle() {
                     threads.emit(LinkEvent::Written { tag, at });
                 }

@@ -27,7 +27,7 @@ impl Default for LinkSettings {
             // UDP and serial lines never do.
             silence: Some(Duration::from_secs(3)),
             retry_first: Duration::from_millis(100),
-            // No longer waits, because an E-stop may be waiting for the connection.
+            // Waits must not be longer: an E-stop may be waiting for the connection.
             retry_max: Duration::from_secs(1),
         }
     }

@@ -45,8 +45,8 @@ pub struct Link {
 impl Link {
     /// Opens a link. Several threads call `on_event`; while it blocks, so does the link.
     ///
+    /// # Errors
     /// [`LinkError`] if the link can never work. An unreachable peer causes [`LinkEvent::Failed`].
-    /// [`LinkError`] if the link can never work. An unreachable peer is [`LinkEvent::Failed`].
     pub fn open(
         address: &LinkAddress,
         settings: LinkSettings,

@@ -48,7 +48,7 @@ impl Peer {
         self.outbox.shut();
     }
 
-    /// Why the connection must end, if so.
+    /// Why the connection must end, if it must.
     pub(super) fn is_to_end(&self) -> Option<End> {
         self.end.lock().clone()
     }

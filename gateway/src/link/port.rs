@@ -78,8 +78,8 @@ impl Port {
         }
     }
 
-    /// Writes all bytes, in one call if the system accepts that. Gives up when `is_given_up`, or
-    /// after [`STALL`].
+    /// Writes all bytes, in one call if the system accepts that. Gives up when `is_given_up`
+    /// returns true, or after [`STALL`].
     pub(super) fn write(&self, bytes: &[u8], is_given_up: impl Fn() -> bool) -> io::Result<Wrote> {
         if let Port::Pty(pty) = self {
             pty.begin()?;
@@ -182,8 +182,8 @@ impl Port {
         }
     }
 
-    /// The time to transmit this many bytes, if long. A serial driver accepts 4 KiB at once, which
-    /// at 4800 baud is 8 s of old commands.
+    /// The time to transmit this many bytes, where it is not negligible. A serial driver accepts 4
+    /// KiB at once, which at 4800 baud is 8 s of old commands.
     pub(super) fn transit(&self, count: usize) -> Duration {
         // Eight data bits, a start bit and a stop bit.
         if let Port::Serial { baud, .. } = self {

@@ -35,7 +35,7 @@ pub(super) struct Pty {
 /// The state of the reader.
 #[derive(Default)]
 struct ReaderState {
-    /// Start of the period during which there have always been unread bytes.
+    /// Start of the current period in which there have always been unread bytes.
     unread_since: Option<Instant>,
     /// When the newest unread write began.
     begun_at: Option<Instant>,
@@ -49,7 +49,7 @@ impl Pty {
         let (master, slave, path) = pair().map_err(|e| LinkError::Pty {
             reason: e.to_string(),
         })?;
-        // Before the symlink, so that a failure leaves none behind.
+        // Create this before the symlink, so that a failure leaves no symlink behind.
         let mut pty = Pty {
             master,
             slave,
@@ -94,8 +94,9 @@ impl Pty {
         }
     }
 
-    /// Called regularly: discards bytes that have been unread for too long, unless some are new.
-    /// The system does not report that a process opened the slave, but a reader empties it.
+    /// Called regularly: discards bytes that have been unread for too long, unless some were
+    /// written recently. The system does not report that a process has opened the slave, but a
+    /// reader empties it.
     pub(super) fn flush_if_stale(&self) -> io::Result<()> {
         let mut reader = self.reader.lock();
         let is_old = reader
@@ -109,9 +110,9 @@ impl Pty {
         }
     }
 
-    /// How long there have been unread bytes without interruption.
+    /// For how long there have been unread bytes without a break.
     fn unread_for(&self, reader: &mut ReaderState) -> io::Result<Duration> {
-        // No event reports a read, but the fill level of the slave's queue shows it.
+        // No event reports a read, but the fill level of the slave's queue reveals it.
         let is_unread = rustix::io::ioctl_fionread(&self.slave)? > 0;
         let since = reader.unread_since.filter(|_| is_unread);
         reader.unread_since = since.or_else(|| is_unread.then(clock::now));
@@ -152,7 +153,7 @@ fn pair() -> io::Result<(SerialPort, OwnedFd, PathBuf)> {
         Mode::empty(),
     )?;
     let mut settings = rustix::termios::tcgetattr(&slave)?;
-    // Otherwise the line discipline echoes the back seat's bytes and converts CR to LF.
+    // Without raw mode, the line discipline echoes the back seat's bytes and converts CR to LF.
     settings.make_raw();
     rustix::termios::tcsetattr(&slave, OptionalActions::Now, &settings)?;
     rustix::fs::fcntl_setfl(&master, OFlags::NONBLOCK)?;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Opens the port.
 pub(super) fn bind(at: (&str, u16)) -> io::Result<(TcpListener, SocketAddr)> {
     let listener = TcpListener::bind(at)?;
-    // On Linux this applies to `accept` too.
+    // On Linux, this timeout applies to `accept` too.
     SockRef::from(&listener).set_read_timeout(Some(TICK))?;
     let address = listener.local_addr()?;
     Ok((listener, address))
@@ -25,7 +25,7 @@ pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
         match listener.accept() {
             Ok((stream, from)) => serve_peer(threads, stream, from),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-            // For example too many open files, which may be temporary.
+            // For example, too many open files, which may be temporary.
             Err(_) if threads.stops_within(TICK) => return,
             Err(_) => {}
         }

@@ -115,9 +115,9 @@ impl Threads {
         priority: Priority,
     ) -> Arc<Completion> {
         let bytes = Arc::new(bytes);
-        // Hold the lock to the end, so that all peers get the same order.
+        // Hold the lock to the end, so that all peers get messages in the same order.
         let peers = self.peers.lock();
-        // The number of current peers. A peer that connects later does not get this message, so
+        // Count only the current peers. A peer that connects later does not get this message, so
         // nothing may wait for it.
         let completion = Completion::new(tag, peers.len());
         let displaced = peers
@@ -146,7 +146,7 @@ impl Threads {
         for peer in self.peers.lock().iter() {
             peer.end(End::Stopped);
         }
-        // A thread that is still running hangs in its callback, and ends after that.
+        // A thread that is still running is blocked in its callback, and ends when that returns.
         drop(self.wait(limit, |state| state.running > 0));
     }
 

@@ -1,7 +1,7 @@
 //! Splits incoming bytes into messages, and counts what it discards.
 //!
 //! Keeps at most one frame. After a damaged frame, the search continues from the byte after its
-//! start, so that a frame inside a wrongly stated length is still found.
+//! start, so that a valid frame within a wrongly stated length is still found.
 
 use super::dialect::MavMessage;
 use ::mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, calculate_crc};
@@ -13,11 +13,12 @@ const SIGNATURE: usize = 13;
 /// The flag of a signed frame of version 2.
 const SIGNED: u8 = 1;
 /// Maximum number of unknown message numbers stored.
-// Any sender on the link can choose numbers: the table must not grow with them.
+// Any sender on the link can choose message numbers, so the table must have a limit.
 const UNKNOWN_MAX: usize = 64;
 
-/// Requests of ArduPilot's own dialect that need a reply, although this program cannot read them:
-/// FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT and RALLY_FETCH_POINT. Number and CRC_EXTRA byte.
+/// Number and CRC_EXTRA byte of requests in ArduPilot's own dialect that need a reply, although
+/// this program cannot read them: FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT and
+/// RALLY_FETCH_POINT.
 const REQUESTS: [(u32, u8); 4] = [(160, 78), (161, 68), (175, 138), (176, 234)];
 
 /// A message and its sender.
@@ -39,9 +40,9 @@ pub struct Unreadable {
     pub system: u8,
     /// The component that sent it.
     pub component: u8,
-    /// Its number.
+    /// The number of the message.
     pub id: u32,
-    /// Its payload, without the trailing zeros that version 2 omits.
+    /// The payload, without the trailing zeros that version 2 omits.
     pub payload: Vec<u8>,
 }
 
@@ -76,8 +77,7 @@ pub struct Counts {
     pub garbage: u64,
     /// Messages with a value that the dialect does not know.
     pub unreadable: u64,
-    /// Messages unknown to the dialect, by number; each is counted when the next frame begins after
-    /// it.
+    /// Messages unknown to the dialect, by number; each is counted once the next frame begins.
     pub unknown: BTreeMap<u32, u64>,
 }
 
@@ -115,7 +115,7 @@ impl Layout {
                     len: end + 2,
                 }))
             }
-            // A receiver that does not know such a flag must discard the frame.
+            // A receiver that does not know an incompatibility flag must discard the frame.
             [MAV_STX_V2, _, flags, ..] if flags & !SIGNED != 0 => Err(NotAFrame),
             [MAV_STX_V2, len, flags, _, _, system, component, a, b, c, ..] => {
                 let end = 10 + usize::from(len);

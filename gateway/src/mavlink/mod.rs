@@ -1,9 +1,8 @@
 //! MAVLink as used by ArduPilot's boats: converts bytes to messages and back, without ports or
 //! clocks.
 //!
-//! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2;
-//! reads versions 1 and 2.
-//! Signatures are neither written nor checked.
+//! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2, and
+//! reads versions 1 and 2. Signatures are neither written nor checked.
 
 mod framer;
 pub(crate) mod position;
@@ -43,7 +42,7 @@ impl Writer {
     /// Appends a message that the dialect cannot express, from its number, its CRC_EXTRA byte, and
     /// its payload.
     pub fn write_raw(&mut self, id: u32, extra_crc: u8, payload: &[u8], out: &mut Vec<u8>) {
-        // Version 2 omits trailing zeros, except for the first byte.
+        // Version 2 omits trailing zeros, but never the first byte.
         let len = payload
             .iter()
             .rposition(|byte| *byte != 0)

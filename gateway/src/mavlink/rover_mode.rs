@@ -15,7 +15,7 @@ pub enum RoverMode {
     Loiter,
     /// Follows the uploaded mission.
     Auto,
-    /// Returns to its home.
+    /// Returns home.
     Rtl,
     /// Returns home along its track.
     SmartRtl,
@@ -24,9 +24,8 @@ pub enum RoverMode {
     /// Is starting up.
     Initialising,
     /// Any other number.
-    // The number is kept, and the mode is treated as another operator's command, since new versions
-    // add modes.
-    // new modes.
+    // New versions add modes. The number is kept, and the mode is treated as another operator's
+    // command.
     Other(u32),
 }
 
@@ -56,7 +55,7 @@ impl RoverMode {
         )
     }
 
-    /// Its number.
+    /// The mode's number.
     pub fn number(self) -> u32 {
         match self {
             RoverMode::Manual => 0,

@@ -6,7 +6,7 @@ use super::dialect::MavMessage;
 const BEGIN: &str = "CharArray { data: [";
 const END: &str = " }";
 
-/// All fields of a message, with strings as text: the crate prints character codes.
+/// All fields of a message. Strings appear as text; the crate prints character codes instead.
 pub fn message_text(message: &MavMessage) -> String {
     let printed = format!("{message:?}");
     let mut parts = printed.split(BEGIN);

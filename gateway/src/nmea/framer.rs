@@ -6,8 +6,8 @@
 use super::checksum;
 use serde::{Deserialize, Serialize};
 
-/// Maximum bytes of a sentence to read, with `$` and CR LF. The standard says 82, but receivers
-/// that send minutes with seven decimal places send GGA sentences of 88.
+/// Maximum bytes of a sentence that is accepted, including `$` and CR LF. The standard says 82, but
+/// receivers that send minutes with seven decimal places send GGA sentences of 88.
 pub const ACCEPTED_MAX: usize = 256;
 
 /// Maximum bytes between `$` and the end of the line: body, `*` and two digits.
@@ -111,7 +111,7 @@ impl Framer {
         self.rejected = Some(Rejected { line, why });
     }
 
-    /// A byte outside any sentence: it ends the incomplete one.
+    /// Handles a byte that cannot be part of a sentence: it ends an incomplete one.
     fn stray(&mut self, byte: u8, filled: Option<usize>) {
         self.counts.garbage += 1;
         self.filled = None;
@@ -125,7 +125,7 @@ impl Framer {
         }
     }
 
-    /// The line's end after `filled` bytes of content.
+    /// Handles the end of a line after `filled` bytes of content.
     fn end(&mut self, filled: usize, take: &mut dyn FnMut(&str)) {
         self.filled = None;
         let Some((body, stated)) = split(&self.content[..filled]) else {

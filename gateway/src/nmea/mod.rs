@@ -92,7 +92,7 @@ pub enum ParseError {
         address: String,
         /// The data field, counted from 1.
         field: usize,
-        /// Its contents.
+        /// The contents of the field.
         found: String,
         /// The allowed contents.
         expected: &'static str,

@@ -38,7 +38,7 @@ pub enum Mode {
 
 impl Mode {
     /// All modes with their letters.
-    // From the command dictionary of a public driver for Surveyors; the manufacturer's interface
+    // Source: the command dictionary of a public driver for Surveyors; the manufacturer's interface
     // document is not public.
     const LETTERS: [(Mode, char); 14] = [
         (Mode::Standby, 'L'),

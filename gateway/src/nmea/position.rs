@@ -55,8 +55,8 @@ impl Axis {
         (size_deg <= f64::from(self.degrees_max)).then_some(size_deg)
     }
 
-    /// `ddmm.mmmm,N` with this many decimal places of minutes. Splits a whole number of steps, so
-    /// that minutes carry into degrees.
+    /// `ddmm.mmmm,N` with this many decimal places of minutes. Rounds to whole steps first, so that
+    /// minutes carry into degrees.
     pub(super) fn printed(&self, angle_deg: f64, decimals: u32) -> Option<String> {
         if !angle_deg.is_finite() || angle_deg.abs() > f64::from(self.degrees_max) {
             return None;
@@ -69,7 +69,7 @@ impl Axis {
         let minutes = steps / steps_per_minute;
         let part = steps % steps_per_minute;
         // A coordinate that rounds to zero is north or east: "0000.00000,S" would be a second
-        // spelling of the same position.
+        // representation of the same position.
         let letter = self.letters[usize::from(angle_deg < 0.0 && steps > 0)];
         let degree_digits = self.degree_digits;
         let part_digits = decimals as usize;

@@ -138,8 +138,8 @@ impl<'a> Reader<'a> {
 
     /// The whole number in the next field, if any.
     fn whole<T: FromStr>(&mut self) -> Result<Option<T>, ParseError> {
-        // The library's parser accepts a plus sign, which in a sentence means that fields have
-        // shifted.
+        // The standard library's parser accepts a plus sign, which in a sentence means that fields
+        // have shifted.
         let whole = |text: &str| {
             text.parse()
                 .ok()
@@ -229,7 +229,7 @@ impl<'a> Reader<'a> {
         self.wrong_at(self.at, expected)
     }
 
-    /// The same for the given field.
+    /// The error that the given field does not match `expected`.
     fn wrong_at(&self, field: usize, expected: &'static str) -> ParseError {
         let found = self
             .data

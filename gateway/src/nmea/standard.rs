@@ -86,7 +86,7 @@ impl Rmc {
             Field::Constant(""),
             Field::Constant(mode),
         ];
-        // Nine: before version 2.3 of the standard there was no mode at the end.
+        // At least nine fields: before version 2.3 of the standard, there was no mode at the end.
         Layout {
             fields_min: 9,
             fields,
@@ -104,7 +104,7 @@ fn fix_mode(valid: bool) -> &'static str {
 pub struct Vtg {
     /// The sender.
     pub talker: Talker,
-    /// Course over ground, degrees true; `None` at rest, which is not north.
+    /// Course over ground, degrees true; `None` at rest, which does not mean north.
     pub course_true_deg: Option<f64>,
     /// Course over ground, degrees magnetic.
     pub course_magnetic_deg: Option<f64>,

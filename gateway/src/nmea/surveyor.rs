@@ -93,14 +93,15 @@ impl Command {
 /// Rounds thrust and difference to whole percentages, halves away from zero; leaves a speed in
 /// knots unchanged.
 ///
-/// A thruster receives their sum, so if rounding would exceed 100 the boat turns a little less.
+/// A thruster receives their sum. If rounding would take it above 100, the difference is reduced,
+/// and the boat turns a little less.
 fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
     let sum =
         |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
     let whole_thrust = thrust.map(f64::round);
     let whole_difference = difference.map(f64::round);
     // 49.5 and 50.5 add up to 100 % but round to 50 and 51. It is not known how a boat handles more
-    // than 100 %, so the difference is reduced.
+    // than 100 %.
     let by_rounding = sum(*thrust, *difference).is_some_and(|sum| sum < 100.5)
         && sum(whole_thrust, whole_difference).is_some_and(|sum| sum > 100.0);
     *difference = whole_difference.map(|whole| {
@@ -151,8 +152,8 @@ impl Attitude {
                     ..TENTHS
                 },
             ),
-            // Write it blank: boats omit heave, and a public client treats a field with only a
-            // space as a broken sentence.
+            // Write it blank: boats omit heave, and a public client rejects a sentence in which
+            // this field contains only a space.
             Field::ReadOnly(&mut self.heave_m),
             Field::Number(&mut self.box_c, TENTHS),
             Field::Number(&mut self.accel_ahead_g, HUNDREDTHS),

@@ -31,7 +31,7 @@ impl Writer {
             .fields
             .into_iter()
             .for_each(|field| line.field(field));
-        // Better to omit a field than to send a sentence that a strict reader rejects.
+        // Omit a field rather than send a sentence that a strict reader rejects.
         while line.body.len() + FRAME > EMITTED_MAX {
             line.empty_the_longest();
         }
@@ -71,7 +71,8 @@ impl Writer {
             Field::Operator(operator) => {
                 self.spare(&operator.map_or_else(String::new, |o| o.number().to_string()))
             }
-            // Never omitted: without it a reader would have to guess whether a fix is valid.
+            // This field is never omitted: without it, a reader would have to guess whether a fix
+            // is valid.
             Field::ValidFix(valid, _) => self.fixed(if *valid { "A" } else { "V" }),
             Field::Time(time) => self.fixed(&time.and_then(TimeOfDay::text).unwrap_or_default()),
             Field::Date(date) => self.fixed(&date.and_then(Date::text).unwrap_or_default()),
@@ -116,7 +117,7 @@ impl Writer {
         self.spare(&format.text(number));
     }
 
-    /// Writes an external string: empty if it contains a character with a meaning for the framing.
+    /// Writes an external string; if it contains a framing character, the field is left empty.
     fn text(&mut self, text: &str) {
         let plain = |byte: u8| matches!(byte, b' '..=b'~') && !matches!(byte, b',' | b'*' | b'$');
         self.spare(if text.bytes().all(plain) { text } else { "" });
@@ -131,7 +132,7 @@ impl Writer {
         }
     }
 
-    /// Empties the longest optional field; of several, the last.
+    /// Empties the longest optional field; of several equally long ones, the last.
     fn empty_the_longest(&mut self) {
         let longest = self
             .spare

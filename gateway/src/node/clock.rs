@@ -1,11 +1,12 @@
-//! The gateway's monotonic clock, which includes time when the machine is suspended. In a game
-//! faster than real time it runs at the game's pace.
+//! The gateway's monotonic clock, which keeps running while the machine is suspended. In a game
+//! faster than real time, it runs at the game's pace.
 
 use bus::clock;
 use primitives::SimTime;
 use std::time::{Duration, Instant};
 
-/// Minimum time that counts as a suspension, since the two clocks are not read simultaneously.
+/// Minimum difference between the two clocks that counts as a suspension: they are not read
+/// simultaneously.
 const SUSPENSION_MIN: Duration = Duration::from_millis(50);
 
 /// A moment, and the total suspended time until then.
@@ -23,7 +24,7 @@ impl Moment {
         }
     }
 
-    /// The time from this moment to `now`, and how long the machine was suspended during it, if it
+    /// The time from this moment to `now`, and for how much of it the machine was suspended, if it
     /// was.
     pub(super) fn gap(self, now: Moment) -> (Duration, Option<Duration>) {
         // Linux's monotonic clock stops during sleep. The time asleep is added, so that old data
@@ -69,7 +70,7 @@ impl Clock {
         self.time_at(Moment::now())
     }
 
-    /// The gateway's time at a real time since the last suspension of the machine.
+    /// The gateway's time at this instant, which must be after the last suspension of the machine.
     pub(super) fn at(&self, at: Instant) -> SimTime {
         self.time_at(Moment {
             at,

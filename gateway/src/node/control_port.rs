@@ -1,5 +1,5 @@
-//! The control port of a gateway: operators' requests over TCP, with or without a game. Datagrams
-//! can carry stops, too.
+//! The control port of a gateway: operators' requests over TCP, with or without a game. UDP
+//! datagrams can also carry stops.
 //!
 //! Requests and replies are one line each, as on the network (`bus::token`). Anyone may query the
 //! status and stop the boat; everything else requires proof of the game's token. Nothing can delay
@@ -27,7 +27,7 @@ const CONNECTIONS_MAX: usize = 128;
 /// Time after which a connection that is idle or does not read is closed.
 const IDLE_MAX: Duration = Duration::from_secs(30);
 const WRITE_MAX: Duration = Duration::from_secs(2);
-/// Maximum bytes of a request: a mission has a few hundred waypoints.
+/// Maximum bytes of a request: enough for a mission of a few hundred waypoints.
 const REQUEST_MAX: u64 = 64 * 1024;
 /// Maximum time for the gateway loop to reply.
 const REPLY_MAX: Duration = Duration::from_secs(2);
@@ -103,7 +103,7 @@ impl ControlPort {
         &self.server.token
     }
 
-    /// Records that the gateway loop answers from now on.
+    /// Records that the gateway loop is running.
     pub(super) fn begin(&self) {
         self.server.is_running.store(true, Ordering::SeqCst);
     }
@@ -115,12 +115,12 @@ impl Server {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(IDLE_MAX))?;
         stream.set_write_timeout(Some(WRITE_MAX))?;
-        // A challenge belongs to one connection, so those of others cannot displace it.
+        // Each connection has its own guard, so other connections cannot displace its challenge.
         let mut guard = Guard::new(self.token.clone());
         let mut reader = BufReader::new(stream);
         loop {
             let mut line = Vec::new();
-            // A line without an end must not exhaust the memory.
+            // An endless line must not exhaust memory.
             reader
                 .by_ref()
                 .take(REQUEST_MAX)
@@ -128,7 +128,8 @@ impl Server {
             if line.pop() != Some(b'\n') {
                 return Ok(());
             }
-            // Read before the check, so that no request checked without a token reaches the loop.
+            // Read this before the check, so that no request checked without a token reaches the
+            // loop.
             let is_running = self.is_running.load(Ordering::SeqCst);
             let (mut answer, is_garbage) =
                 match guard.check(GATEWAY_PORT_KEY, &line, GatewayCommand::needs_token) {
@@ -144,8 +145,8 @@ impl Server {
                 };
             answer.push(b'\n');
             stream.write_all(&answer)?;
-            // If a web page makes a browser post to this port, it sends HTTP: the first line is
-            // garbage, and the rest is not read.
+            // If a web page makes a browser post to this port, the browser sends HTTP: the first
+            // line is garbage, and the rest is not read.
             if is_garbage {
                 return Ok(());
             }
@@ -165,7 +166,7 @@ impl Server {
         // The loop reads stops before everything else; the query only returns the resulting state.
         let ask = match self.stop_in(&command) {
             Some(stop) => {
-                // Before preparing the reply, so that nothing can delay the stop.
+                // Stop before preparing the reply, so that nothing can delay the stop.
                 self.input.stop(stop);
                 GatewayCommand::boat(&self.vehicle, OperatorCommand::Status)
             }
@@ -369,7 +370,7 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains(&token.hex()));
-        // A request without space for a reply gets none.
+        // A request shorter than its reply gets none.
         socket
             .send(br#"{"body":{"fleet":"e_stop"}}"#)
             .expect("it is sent");
@@ -384,7 +385,7 @@ mod tests {
         let garbage: Vec<TcpStream> = (0..CONNECTIONS_MAX)
             .map(|i| {
                 let mut stream = connect();
-                // Some are dropped while they write.
+                // The gateway drops some of them in mid-write.
                 drop(stream.write_all(&vec![b'x'; if i % 2 == 0 { 10 } else { 100_000 }]));
                 stream
             })

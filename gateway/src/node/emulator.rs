@@ -54,7 +54,7 @@ pub enum FrontSeatSettings {
         declination_rad: Option<f64>,
         /// Time without a command after which the boat goes to standby, s; `None` means never.
         watchdog_s: Option<f64>,
-        /// Whether a non-integer set-point leaves the previous one in force.
+        /// Whether the boat ignores non-integer set-points and keeps the previous one.
         integers: bool,
         /// Sentences in addition to a Surveyor's.
         extra: Vec<Extra>,
@@ -79,10 +79,10 @@ pub enum FrontSeatSettings {
     },
 }
 
-/// Maximum bytes of waiting commands: more than a back seat sends in a minute.
+/// Maximum bytes of queued commands: more than a back seat sends in a minute.
 const UNREAD_MAX: usize = 256 * 1024;
 
-/// Maximum number of waiting frames: more than a game publishes while one is read.
+/// Maximum number of queued frames: more than a game publishes while one is being read.
 const FRAMES_MAX: usize = 64;
 
 /// Input from the links and the sim since the last poll.
@@ -109,8 +109,7 @@ pub fn emulate(
     let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
     let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
     let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
-    // A back seat runs in real time.
-    // Lockstep is rejected: its clock stops between decisions.
+    // A back seat runs in real time, so lockstep is rejected: its clock stops between decisions.
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
@@ -125,7 +124,7 @@ pub fn emulate(
     )?;
     let (front_seat, links) = open_front_seat(&settings.front_seat, datum, &incoming, notify)?;
     let frames = Arc::clone(&incoming);
-    // Firmware has its own sensor models.
+    // Firmware has its own sensor models, so it needs the true state.
     let _truth = matches!(settings.front_seat, FrontSeatSettings::Sitl { .. }).then(|| {
         bus.subscribe(topic::frame(&game), move |bytes| {
             frames.visit(|incoming| incoming.keep_frame(bytes))

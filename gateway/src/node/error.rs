@@ -16,14 +16,14 @@ pub enum NodeError {
     /// The network failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// There is no game, or it refuses the boat.
+    /// No game was found, or the game refuses the boat.
     #[error(transparent)]
     NotFound(#[from] NotFound),
     /// The link cannot be opened.
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The control port cannot be opened.
-    #[error("the control port {listen}: {source}")]
+    #[error("cannot open the control port {listen}: {source}")]
     ControlPort {
         /// The address.
         listen: SocketAddr,
@@ -61,7 +61,7 @@ pub enum NodeError {
     /// The game and the gateway do not match.
     #[error("{0}")]
     Refused(String),
-    /// The sim has died or is silent, so the emulated boat is also lost.
+    /// The sim has died or is silent, so the emulated boat is lost too.
     #[error("lost the sim: no picture for {0:.1?}")]
     SimGone(Duration),
     /// A different sim serves a game with the same name, and does not know us.

@@ -46,8 +46,8 @@ fn find(settings: &Settings, tell: &mut dyn FnMut(&str)) -> Result<FoundGame, No
     let field = info.scenario.field.clone();
     let area = GeofenceArea::new(&field, &plan.gateway.geofence);
     let file = plan.gateway.name.clone();
-    // Before the boat joins: otherwise a geofence that excludes the start position would only be
-    // noticed with the boat on the water.
+    // Check before the boat joins: otherwise a geofence that excludes the start position would only
+    // be noticed once the boat is on the water.
     area.check(&info.scenario, vehicle)
         .map_err(|source| NodeError::Geofence { file, source })?;
     let declination_rad = declination_rad(plan.gateway.declination_rad, field.plan.datum)?;
@@ -59,10 +59,10 @@ fn find(settings: &Settings, tell: &mut dyn FnMut(&str)) -> Result<FoundGame, No
         declination_rad,
         coasting,
     };
-    // The thread that keeps the boat joined repeats the request and gets the same boat.
+    // `Join` later repeats this request and gets the same boat.
     let names = [plan.vehicle.clone()];
     let all = (&game, &info.scenario);
-    // Joining once during the search reports a wrong token or a boat already taken while the
+    // Join once during the search, to report a wrong token or a boat already taken while the
     // operator is still watching.
     search.until(tell, || {
         game_search::join(&bus, place, all, Role::Gateway, &names)

@@ -1,5 +1,5 @@
-//! The conditions under which a boat takes part in a game: its source, the pace, and the
-//! declination at the field.
+//! The conditions under which a boat takes part in a game: that it is a real boat, the pace, and
+//! the declination at the field.
 
 use super::error::NodeError;
 use crate::declination::declination_deg;
@@ -39,7 +39,7 @@ pub(super) fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeErr
     }
 }
 
-/// The configured declination, or else that of the field today; east positive, rad.
+/// The configured declination, or else today's declination at the field; east positive, rad.
 pub(super) fn declination_rad(set_rad: Option<f64>, at: LatLon) -> Result<f64, NodeError> {
     let today_rad = || Ok(declination_deg(at, date_and_time(utc::now_ns()).0)?.to_radians());
     set_rad.map_or_else(today_rad, Ok)

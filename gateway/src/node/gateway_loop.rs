@@ -28,20 +28,20 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Interval between reports of the status.
+/// Interval between status reports.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
 /// Maximum time for the shutdown message.
 const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
-/// Maximum time for which the loop waits after an error to reach the boat and send it standby.
+/// Maximum time that the loop waits, after an error, to reach the boat and send it standby.
 const REACH_MAX: Duration = Duration::from_secs(2);
 const NOT_REACHED: &str = "not connected yet";
 /// Maximum number of order sentences awaiting completion.
 const WRITING_MAX: usize = 64;
 /// Maximum time that data may have waited for the loop. Data that waited longer is outdated: the
-/// loop was suspended or had no processor.
+/// loop was suspended or got no processor time.
 const WAITED_MAX: Duration = Duration::from_millis(500);
 /// The reply to a request that a disarm has overtaken.
-const DISARMED: &str = "the boat has been disarmed since: repeat the request";
+const DISARMED: &str = "the boat was disarmed in the meantime: repeat the request";
 /// Time within which a recurring message is not logged again.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
@@ -127,20 +127,20 @@ impl GatewayLoop<'_> {
             beat_at = self.beat(beat_at)?;
             let stop_count = self.input.stop_count();
             self.take_requests()?;
-            // With the count from before the stops were taken: a published state covers all stops
-            // up to this count, and no later ones.
+            // Use the count from before the stops were taken: a published state covers all stops up
+            // to this count, and no later ones.
             self.input
                 .show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
-            // Wait no longer than a heartbeat: the guard cannot distinguish a loop that is waiting
-            // for a boat from one that hangs.
+            // Wait no longer than a heartbeat interval: the guard cannot distinguish a loop that is
+            // waiting for a boat from one that hangs.
             let call = self.input.calls.take(if self.guarded.is_some() {
                 wait.min(HEARTBEAT)
             } else {
                 wait
             });
-            // Note the suspension before input that arrived meanwhile.
+            // Record a suspension before handling input that arrived during it.
             beat_at = self.beat(beat_at)?;
             match call {
                 Some(call) => self.handle_call(call)?,
@@ -163,7 +163,7 @@ impl GatewayLoop<'_> {
         let start = clock::now();
         while self.counters.link == NOT_REACHED && clock::since(start) < REACH_MAX {
             if let Some(Call::Link(event)) = self.input.calls.take(HEARTBEAT) {
-                // There is already an error.
+                // An earlier error is already being reported.
                 drop(self.take_link(event));
             }
         }
@@ -253,7 +253,7 @@ impl GatewayLoop<'_> {
         Ok(())
     }
 
-    /// Enters the game found.
+    /// Enters the game that was found.
     fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
         let FoundGame {
             bus,
@@ -281,7 +281,7 @@ impl GatewayLoop<'_> {
             )?,
             bus,
         };
-        // The link is in service already: only the parts that need a field start here.
+        // The link is already in use: only the parts that need a field start here.
         self.in_game = Some(in_game);
         self.clock.set_pace(factor);
         self.encoder.set_vehicle(vehicle);
@@ -297,8 +297,8 @@ impl GatewayLoop<'_> {
             Call::Link(event) => self.take_link(event)?,
             Call::Order => self.take_order()?,
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None)?,
-            // Otherwise the end of every game would be a failsafe. A task of the boat's own
-            // controller continues, since it needs no game.
+            // Otherwise every game would end in a failsafe. A task of the boat's own controller
+            // continues, since it needs no game.
             Call::Over if self.bridge.state() == State::Armed => {
                 self.remark("the game is over: disarming the boat");
                 self.step(Input::Operator(OperatorCommand::Disarm), None)?;
@@ -329,7 +329,7 @@ impl GatewayLoop<'_> {
                 self.remark("joined: the sim accepts the boat's reports");
                 self.step(Input::Joined, None)?;
             }
-            // The ticket would belong to a different boat, which our reports would then move.
+            // The ticket belongs to a different boat, which our reports would move.
             Call::Joined(_) => {
                 let reason = "the sim admitted a different boat from the one that asked".to_owned();
                 return Err(NodeError::Refused(reason));
@@ -407,8 +407,8 @@ impl GatewayLoop<'_> {
             let places = others.iter().map(|&[north, east]| Ned { north, east });
             self.step(Input::Others(places.collect()), None)?;
         }
-        // Check the order here as well as in the sim: the core receives only valid numbers,
-        // whatever is on the topic.
+        // Check the order here as well as in the sim: the core must receive only valid numbers,
+        // whatever is published on the topic.
         let sound = message
             .order
             .order()
@@ -503,7 +503,7 @@ impl GatewayLoop<'_> {
                 event,
             });
         }
-        // Operators wait for this status: a stop counts as done when the status shows it.
+        // Operators wait for this status: a stop is confirmed once the status shows it.
         if out
             .events
             .iter()
@@ -558,10 +558,11 @@ impl Drop for GatewayLoop<'_> {
     /// However a gateway ends, except by a kill or a power cut, it sends the boat the shutdown
     /// message three times before the link closes.
     fn drop(&mut self) {
-        // Three times, for links that lose bytes; on every way out of the loop, including a panic.
+        // Three times, for lossy links; sent on every exit from the loop, including a panic.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
-        // After the message: until then the guard must cover for a hang.
+        // End the guard only after the message: until then, it must stop the boat if this process
+        // hangs.
         self.guarded.iter().for_each(Guarded::end);
     }
 }

@@ -1,10 +1,10 @@
 //! The guard of a gateway: a small process that stops the boat when the gateway dies, hangs or is
 //! suspended.
 //!
-//! It holds a duplicate of the link, which outlives a killed process, and one end of a socket pair,
-//! through which the gateway sends the stop message of its protocol, a heartbeat from its loop,
-//! every new link, and notice of an orderly exit. Without a heartbeat for [`SILENCE`], or when the
-//! other end closes, it writes the stop message: zero thrust and standby.
+//! It holds a duplicate of the link's file descriptor, which outlives a killed process, and one end
+//! of a socket pair, through which the gateway sends the stop message of its protocol, a heartbeat
+//! from its loop, every new link, and notice of an orderly exit. Without a heartbeat for
+//! [`SILENCE`], or when the other end closes, it writes the stop message: zero thrust and standby.
 
 use bus::clock;
 use parking_lot::Mutex;
@@ -30,7 +30,7 @@ const SILENCE: Duration = Duration::from_millis(400);
 /// Time without a heartbeat after which the loop itself assumes that the guard has stopped the
 /// boat: shorter, so that the two never disagree.
 pub(super) const HUNG: Duration = Duration::from_millis(350);
-/// Interval at which the guard repeats standby while the gateway hangs or after it has died.
+/// Interval at which the guard repeats standby while the gateway hangs and after it has died.
 const AGAIN: Duration = Duration::from_millis(100);
 const LAST_WORDS: usize = 4;
 /// Maximum time to write one sentence.
@@ -42,7 +42,7 @@ const LINK: u8 = b'+';
 const NO_LINK: u8 = b'-';
 const ENDS: u8 = b'!';
 const STOP: u8 = b'=';
-/// Maximum bytes of a message to the guard.
+/// Maximum size of a message to the guard, bytes.
 const TOLD_MAX: usize = 1024;
 
 /// The gateway's end.
@@ -121,7 +121,7 @@ impl Guarded {
         if !descriptors.is_empty() {
             control.push(SendAncillaryMessage::ScmRights(&descriptors));
         }
-        // The loop must not wait for its guard, and a dead guard must not kill the gateway by
+        // The loop must not wait for its guard, and a dead guard must not kill the gateway with
         // SIGPIPE.
         let flags = SendFlags::DONTWAIT | SendFlags::NOSIGNAL;
         match sendmsg(&self.0.socket, &[IoSlice::new(what)], &mut control, flags) {
@@ -145,7 +145,7 @@ enum Heard {
     Told(u8, Option<OwnedFd>),
     /// The stop message.
     Stop(Vec<u8>),
-    /// Nothing within [`SILENCE`], or within the whole wait.
+    /// Nothing within the time limit.
     Nothing,
     /// The other end has closed.
     Died,
@@ -186,8 +186,8 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
                 let Some(link) = &link else { return Ok(()) };
                 write(link, &stop);
                 remark("the gateway has died: sending zero thrust and standby to its boat");
-                // Repeat it, for links that lose bytes, and because the dead gateway may have left
-                // data queued in the kernel.
+                // Repeat it for lossy links, and because the dead gateway may have left data queued
+                // in the kernel.
                 for _ in 1..LAST_WORDS {
                     clock::rest(AGAIN);
                     write(link, &stop);

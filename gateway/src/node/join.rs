@@ -26,8 +26,8 @@ impl Join {
         vehicle: &str,
         calls: InboxSender<Call>,
     ) -> Result<Join, BusError> {
-        // Only the sim's token matters: the gateway waits for a sim that hangs, and the boat rests
-        // without orders.
+        // Only the sim's liveliness token matters: if the sim hangs, the gateway waits for it, and
+        // without orders the boat stops.
         let sim = SimWatch::open(bus, game, Patience::of_player(Duration::MAX))?;
         let stop = Arc::new(AtomicBool::new(false));
         let bus = bus.clone();
@@ -54,7 +54,7 @@ impl Join {
 
 impl Drop for Join {
     fn drop(&mut self) {
-        // Dropping the fields waits for the thread.
+        // Dropping the fields joins the thread.
         self.stop.store(true, Ordering::Relaxed);
     }
 }
@@ -74,7 +74,7 @@ fn keep_joined(
         match GameSearch::new(Duration::MAX, stop).until(&mut say, join) {
             Ok(joined) => calls.put(Call::Joined(joined)),
             // Keep trying: the gateway that holds the boat may be about to leave, or the next sim
-            // may have the boat.
+            // may include the boat.
             Err(NotFound::Refused(refusal)) => {
                 calls.put(Call::Remark(format!("refused by the sim: {refusal}")))
             }

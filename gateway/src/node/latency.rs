@@ -11,7 +11,7 @@ pub(super) struct Latency(Histogram<u64>);
 
 impl Latency {
     pub(super) fn new() -> Latency {
-        // Three significant digits need bounded memory, however long the gateway runs.
+        // With three significant digits, memory stays bounded however long the gateway runs.
         Latency(Histogram::new_with_bounds(1, LONGEST_US, 3).expect("sound bounds"))
     }
 

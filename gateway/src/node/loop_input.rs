@@ -13,9 +13,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
 
-/// Maximum number of calls that wait for the loop.
+/// Maximum number of calls queued for the loop.
 const CALLS_MAX: usize = 4096;
-/// Maximum number of waiting operator requests, separately for the hub and the control port.
+/// Maximum length of each queue of operator requests: one for the hub, one for the control port.
 const REQUESTS_MAX: usize = 64;
 
 /// An event that wakes the loop.
@@ -30,19 +30,19 @@ pub(super) enum Call {
     /// The game has ended.
     Over,
     SimGone,
-    /// There is no game yet, for the given reason.
+    /// No game has been found yet, for this reason.
     Looking(String),
     Remark(String),
 }
 
-/// A request at the control port, and the destination of its reply.
+/// A request at the control port, and the channel for its reply.
 pub(super) type PortRequest = (GatewayCommand, SyncSender<OperatorReply>);
 
-/// The end for writing, used by other threads.
+/// The sending end, used by other threads.
 #[derive(Clone)]
 pub(super) struct LoopInput {
     pub(super) calls: InboxSender<Call>,
-    /// The latest order and its arrival time. Only the latest order waits, however many arrive.
+    /// The latest order and its arrival time. Each new order replaces the previous one.
     pub(super) latest_order: Arc<Mutex<Option<(ExternalOrder, Instant)>>>,
     stops: Arc<Stops>,
     found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
@@ -50,12 +50,12 @@ pub(super) struct LoopInput {
     port_requests: InboxSender<PortRequest>,
 }
 
-/// The end for reading, used by the loop.
+/// The receiving end, used by the loop.
 pub(super) struct LoopOutput {
     pub(super) calls: Inbox<Call>,
     pub(super) queries: Inbox<Query>,
     pub(super) port_requests: Inbox<PortRequest>,
-    /// The other end.
+    /// The sending end.
     pub(super) back: LoopInput,
 }
 
@@ -80,7 +80,7 @@ impl Stop {
 /// Stops received but not yet executed. Nothing is queued ahead of them or can displace them.
 #[derive(Default)]
 struct Stops {
-    // Flags, not a queue, which could be flooded.
+    // Flags rather than a queue, which could be flooded.
     boat: AtomicBool,
     fleet: AtomicBool,
     disarm: AtomicBool,
@@ -134,7 +134,7 @@ impl LoopInput {
         let is_first = !self.stops.of(stop).swap(true, Ordering::SeqCst);
         // Count the stop once it is visible.
         let count = self.stops.count.fetch_add(1, Ordering::SeqCst) + 1;
-        // Only the first of several wakes the loop, so they cannot fill the inbox.
+        // Only the first of several pending stops wakes the loop, so stops cannot fill the inbox.
         if is_first {
             self.wake();
         }
@@ -159,7 +159,7 @@ impl LoopInput {
             .visit(|(carried_out, state)| (*carried_out >= count).then(|| state.clone()))
     }
 
-    /// Sets the game, or the reason why there is none. This cannot be displaced either.
+    /// Sets the game, or the reason why none was found. Like a stop, it cannot be displaced.
     pub(super) fn found(&self, found: Result<FoundGame, NodeError>) {
         *self.found.lock() = Some(found);
         self.wake();
@@ -177,15 +177,15 @@ impl LoopInput {
         self.wake();
     }
 
-    /// The call may be dropped if the inbox is full: then the loop has calls to read, and checks
-    /// everything else before each of them.
+    /// If the inbox is full, the call may be dropped: the loop then has calls to read anyway, and
+    /// checks everything else before each of them.
     fn wake(&self) {
         self.calls.put(Call::Look);
     }
 }
 
 impl LoopOutput {
-    /// Takes the game that was found, once.
+    /// Takes the result of the search for the game; later calls return `None`.
     pub(super) fn take_found(&self) -> Option<Result<FoundGame, NodeError>> {
         self.back.found.lock().take()
     }

@@ -21,7 +21,7 @@ fn space(folder: &Path) -> Check {
         Ok(disk) => {
             let free_mib = disk.f_bavail.saturating_mul(disk.f_frsize) >> 20;
             let found = format!(
-                "{free_mib} MiB free in {}, expected {SPACE_MIN_MIB}",
+                "{free_mib} MiB free in {}, expected at least {SPACE_MIN_MIB}",
                 folder.display()
             );
             Check::of(name, free_mib >= SPACE_MIN_MIB, found)
@@ -45,7 +45,7 @@ fn sleep(inhibitors: &Path) -> Check {
         .filter_map(|entry| std::fs::read_to_string(entry.path()).ok());
     let holders: Vec<String> = texts.filter_map(|text| sleep_inhibitor(&text)).collect();
     if holders.is_empty() {
-        let found = "nothing prevents this machine from sleeping; use systemd-inhibit --what=sleep, or the unit";
+        let found = "nothing prevents this machine from sleeping; use systemd-inhibit --what=sleep or the systemd unit";
         return Check::of("sleep", false, found.to_owned());
     }
     Check::of(
@@ -55,7 +55,7 @@ fn sleep(inhibitors: &Path) -> Check {
     )
 }
 
-/// The name of the process that prevents sleep with this entry, if the entry does.
+/// The name of the process that owns this inhibitor entry, if the entry prevents sleep.
 fn sleep_inhibitor(text: &str) -> Option<String> {
     let value = |key: &str| {
         text.lines()

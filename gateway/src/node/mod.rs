@@ -77,9 +77,9 @@ pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 /// standby.
 ///
 /// # Errors
-/// [`NodeError`] if another gateway on this machine holds the link, if the game refuses, or if the
-/// network, the link or the recording fails. A lost boat or sim is not an error: the gateway waits
-/// for it.
+/// [`NodeError`] if another gateway on this machine holds the link, if the game refuses the boat,
+/// or if the network, the link or the recording fails. A lost boat or sim is not an error: the
+/// gateway waits for it.
 pub fn serve(
     settings: &Settings,
     file: Option<NewFile>,
@@ -101,11 +101,11 @@ pub fn serve(
         }
     };
     let input = loop_input();
-    // The token known so far. Nothing waits for it, and it is not an error if there is no game yet.
+    // Fetch the token known so far. Nothing waits for it, and having no game yet is not an error.
     drop(settings.place.net(settings.game.as_ref()));
-    // Until a game provides a token, the port has its own; in a game with keys it keeps that one.
+    // Until a game provides a token, the port uses its own, which it keeps in a game with keys.
     let token = settings.place.token.get().unwrap_or_else(Token::random);
-    // Before the link: a port in use is an error before the boat receives anything from us.
+    // Open the port before the link: if it is in use, report this before sending the boat anything.
     let port = ControlPort::open(
         outside.control,
         &settings.plan.vehicle,
@@ -133,7 +133,7 @@ pub fn serve(
     connect(settings, input, file, (Some(port), guarded), open, notify)
 }
 
-/// Warns before the gateway's clock starts.
+/// Reports a warning before the gateway's clock has started.
 fn warn(notify: &mut dyn FnMut(NodeEvent<'_>), text: String) {
     notify(NodeEvent::Event {
         at_s: 0.0,
@@ -147,7 +147,7 @@ fn start_guard(
     mut command: Command,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Option<Guarded> {
-    // Without the environment the guard has no token and no address, and needs neither.
+    // The environment may contain the token and addresses; the guard needs neither.
     command.env_clear();
     let started = Guarded::start(
         command,
@@ -190,7 +190,7 @@ fn connect(
     let recorder = file.and_then(|file| recorder(file, settings, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
-    // From here on time is that of the core: a recording begins at zero, and a replay has the same
+    // From here on, time is the core's: a recording begins at zero, and its replay has the same
     // times.
     let clock = Clock::start();
     let mut gateway_loop = GatewayLoop {
@@ -209,8 +209,8 @@ fn connect(
         guard: Guard::new(settings.place.token.clone()),
         port: port.as_ref(),
     };
-    // On its own thread: a gateway that first searched for its game left a moving boat unattended
-    // meanwhile.
+    // Search on a separate thread: a gateway that searched first would leave a moving boat
+    // unattended.
     let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = match &finder {
@@ -228,12 +228,12 @@ fn connect(
     let recorder = gateway_loop.recorder.take();
     drop(gateway_loop);
     let recorded = recorder.map(|recorder| recorder.end(Facts::new()));
-    // Set in every case; this also ends the search for a game.
+    // Set the flag in every case; this also ends the search for a game.
     settings.stop.store(true, Ordering::Relaxed);
     drop((port, finder));
     notify(NodeEvent::Ended(&status));
     in_game.into_iter().for_each(InGame::leave);
-    // Errors of the boat or the game come first.
+    // Errors of the boat or the game take precedence.
     result.and(match recorded.as_ref().and_then(report::recording_fault) {
         Some(fault) => Err(NodeError::Recording(fault)),
         None => Ok(()),

@@ -82,7 +82,7 @@ impl GatewayLoop<'_> {
         out: &Output,
     ) -> Result<(), NodeError> {
         let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
-        // Encode only for a reader: without a recorder or observers, the bytes are dropped here.
+        // Encode the bytes only if there is a recorder or an observer; otherwise drop them here.
         let ticket = self
             .counters
             .ticket

@@ -12,11 +12,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Interval at which the reply to a waiting firmware is attempted.
+/// Interval at which the port checks for a reply to waiting firmware.
 const REPLY_WAIT: Duration = Duration::from_millis(2);
-/// Silence of the current firmware after which a different one may use the port.
+/// Silence of the current firmware instance after which another may use the port.
 const IDLE_MAX: Duration = Duration::from_secs(3);
-/// Larger than any datagram of the firmware.
+/// Larger than any datagram from the firmware.
 const DATAGRAM_MAX: usize = 512;
 
 /// The firmware as the boat's front seat. The port is open as long as this value exists.
@@ -85,7 +85,8 @@ fn serve(socket: &UdpSocket, firmware: &Mutex<Sitl>, stop: &AtomicBool) {
     let mut user: Option<(SocketAddr, std::time::Instant)> = None;
     let mut buffer = [0; DATAGRAM_MAX];
     while !stop.load(Ordering::Relaxed) {
-        // A timeout, or the error of an earlier reply to a closed port: a reply may be due.
+        // On a timeout, or the error from an earlier reply to a closed port, continue: a reply may
+        // be due.
         if let Ok((count, from)) = socket.recv_from(&mut buffer) {
             let is_taken =
                 user.is_some_and(|(by, heard)| by != from && clock::since(heard) < IDLE_MAX);
@@ -97,7 +98,7 @@ fn serve(socket: &UdpSocket, firmware: &Mutex<Sitl>, stop: &AtomicBool) {
         }
         let reply = firmware.lock().reply();
         if let (Some(reply), Some((to, _))) = (reply, user) {
-            // A lost reply is requested again after a second.
+            // The firmware requests a lost reply again after a second.
             drop(socket.send_to(reply.as_bytes(), to));
         }
     }

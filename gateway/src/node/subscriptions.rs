@@ -32,12 +32,13 @@ pub(super) fn subscribe(
     };
     let name = &scenario.vehicles[vehicle.index()].name;
     Ok(vec![
-        // Subscribe to the sim, not to agents: only the sim knows whose order counts (tickets),
+        // Subscribe to the sim, not to agents: only the sim knows whose orders count (tickets),
         // what the referee allows, and when an agent is lost. A second implementation of these
         // rules would eventually diverge.
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| {
-            // The query is processed again after those queued before it, to send the reply.
+            // The stop takes effect now; the query itself waits its turn in the queue to be
+            // answered.
             let command =
                 Guard::default().check(query.key(), query.payload(), OperatorCommand::needs_token);
             if let Checked::Granted(command) = command
@@ -69,7 +70,7 @@ pub(super) fn subscribe(
     ])
 }
 
-/// The topics that stop the boat: an operator's command to it, or to all boats.
+/// The stop in a message: an operator's command to this boat or to all boats.
 fn stop_in(bytes: &[u8]) -> Option<Stop> {
     match serde_json::from_slice(bytes) {
         Ok(GatewayCommand::Fleet(FleetCommand::EStop)) => Some(Stop::EStop(Scope::Fleet)),

@@ -38,7 +38,7 @@ impl TcpPort {
         serve: impl Fn(&Slot, &TcpStream) + Send + Sync + 'static,
     ) -> io::Result<TcpPort> {
         let listener = TcpListener::bind(listen)?;
-        // On Linux this applies to `accept` too.
+        // On Linux, this timeout applies to `accept` too.
         SockRef::from(&listener).set_read_timeout(Some(POLL))?;
         let address = listener.local_addr()?;
         let server = Arc::new(Server {
@@ -78,20 +78,19 @@ impl Server {
             match listener.accept() {
                 Ok((stream, from)) => self.open(stream, from.ip()),
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-                // For example too many open files, which may be temporary.
+                // For example, too many open files, which may be temporary.
                 Err(_) => clock::rest(POLL),
             }
         }
     }
 
-    /// Starts the thread of a connection. Without a thread, the connection is closed.
+    /// Starts a thread for a connection. If no thread can start, the connection is closed.
     fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
         let Ok(other) = stream.try_clone() else {
             return;
         };
-        // The reading thread will notice; the stream may be closed already.
-        // Close the connection that has been idle longest, so that many silent connections cannot
-        // lock anyone out.
+        // `admit` closes the connection that has been idle longest, so that many silent connections
+        // cannot lock anyone out; the thread that reads it will notice.
         let slot = self
             .connections
             .admit(from, move || drop(other.shutdown(Shutdown::Both)));

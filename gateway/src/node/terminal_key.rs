@@ -10,7 +10,7 @@ use std::time::Duration;
 /// How often the terminal is polled.
 const POLL: Duration = Duration::from_millis(50);
 
-/// Calls `pressed` whenever Enter is pressed in this process's terminal, while it has one.
+/// Calls `pressed` whenever Enter is pressed in this process's terminal, if it has one.
 ///
 /// The system suspends a background process that reads from its terminal, while its boat continues.
 /// Therefore the thread reads only while this process is in the foreground, and no read blocks.
@@ -40,7 +40,7 @@ pub fn on_enter(pressed: impl Fn() + Send + 'static) {
             }
         }
     };
-    // Without a thread only the key does not work.
+    // If the thread cannot start, only the key does not work.
     drop(
         std::thread::Builder::new()
             .name("terminal key".to_owned())

@@ -10,8 +10,8 @@ use crate::sensor_check::{HostTime, SensorCheck};
 use primitives::frame::LatLon;
 use rules::Field;
 
-/// Maximum scatter of the fixes of a boat at rest, m: the radius around their mean with 95 of 100
-/// fixes, and the drift of that mean.
+/// Maximum scatter of the fixes of a boat at rest, m: the radius around their mean that contains 95
+/// of 100 fixes, and the drift of that mean.
 const SCATTER_MAX_M: f64 = 2.5;
 /// How long fixes are collected, s.
 const SCATTER_S: f64 = 25.0;

@@ -41,7 +41,7 @@ impl CompassSwing {
         }
     }
 
-    /// The number of 30-degree sectors to which the boat has pointed.
+    /// The number of 30-degree sectors in which the boat has pointed.
     pub fn sectors(&self) -> usize {
         let sector = |psi_rad: f64| (psi_rad / TAU * SECTORS as f64) as usize % SECTORS;
         let mut seen = [false; SECTORS];
@@ -57,7 +57,7 @@ impl CompassSwing {
     /// The missing condition.
     pub fn fit(&self) -> Result<Deviation, String> {
         let sectors = self.sectors();
-        // With only part of the circle, the sines of one and two turns cannot be separated.
+        // With only part of the circle, sin h and sin 2h cannot be separated.
         if sectors < SECTORS {
             return Err(format!(
                 "{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"
@@ -129,7 +129,7 @@ fn basis(psi_rad: f64) -> [f64; 5] {
     [1.0, sin, cos, sin_2, cos_2]
 }
 
-/// Solves a symmetric system by Cholesky's factors (Golub and Van Loan, *Matrix Computations*,
+/// Solves a symmetric system by Cholesky factorisation (Golub and Van Loan, *Matrix Computations*,
 /// 4.2.3 and 3.1); `None` if it is not positive definite. A five-by-five system does not justify a
 /// matrix library on the boat.
 fn solve_positive_definite(matrix: [[f64; 5]; 5], right: [f64; 5]) -> Option<[f64; 5]> {

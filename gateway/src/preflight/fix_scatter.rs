@@ -54,7 +54,8 @@ mod tests {
                 .map(|i| frame.lat_lon(place(f64::from(i))))
                 .collect()
         };
-        // On a circle of 2 m, with four of a hundred far off, evenly spaced around the circle.
+        // Fixes evenly spaced on a circle with a radius of 2 m, except for four of a hundred, which
+        // are far off.
         let round = fixes(&|i| {
             Ned::toward_deg(i * 90.0 + 3.6 * i).scaled(if i < 4.0 { 50.0 } else { 2.0 })
         });

@@ -34,9 +34,9 @@ pub enum Verdict {
 /// One check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Check {
-    /// Its name.
+    /// The name of the check.
     pub name: String,
-    /// Its result.
+    /// The result of the check.
     pub verdict: Verdict,
     /// The value found, and the values allowed.
     pub found: String,

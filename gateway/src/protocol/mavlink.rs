@@ -3,7 +3,7 @@
 //! The boat follows set-points when it is armed and in mode GUIDED; standby is mode HOLD, disarmed.
 //! A boat in any other mode that we did not request is under other control (a remote control, a
 //! ground station, a failsafe of its own), and receives nothing that would take it over. A mode is
-//! requested until the boat shows it once, and never again after the boat has left it, so that an
+//! requested until the boat reports it once, and never again after the boat has left it, so that an
 //! operator who takes the boat out of GUIDED keeps control.
 
 use super::codec::{Codec, Command, UploadStep, named};
@@ -30,7 +30,7 @@ use primitives::{SimTime, math};
 
 /// Interval of our heartbeat, s.
 const HEARTBEAT_S: f64 = 1.0;
-/// Time after which a mode or arming that the boat does not show is requested again, s.
+/// Time (s) after which a mode or arming that the boat does not report is requested again.
 const AGAIN_S: f64 = 0.5;
 /// Minimum speed of a velocity that is sent, m/s: below it the direction would be a rounding error.
 const VELOCITY_MIN_M_S: f64 = 0.01;
@@ -45,7 +45,7 @@ const STREAMS: [(u32, f64); 9] = [
     (SYS_STATUS_DATA::ID, 1.0),
     (SYSTEM_TIME_DATA::ID, 1.0),
     (HOME_POSITION_DATA::ID, 0.5),
-    // The set-points that the boat follows, to compare with ours.
+    // The set-points that the boat follows, for comparison with ours.
     (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
 ];
@@ -108,8 +108,8 @@ impl Mavlink {
                 take(Report::Home([at.lat_deg, at.lon_deg]));
             }
             MavMessage::MISSION_ACK(ack) if (ack.target_system, ack.target_component) == ours => {
-                // Must be for our system and component: ground stations on the same link also
-                // upload missions.
+                // Check that the message is for our system and component: ground stations on the
+                // same link also upload missions.
                 self.upload
                     .iter_mut()
                     .for_each(|upload| upload.take_ack(ack.mavtype, now));
@@ -127,7 +127,7 @@ impl Mavlink {
         }
     }
 
-    /// Requests a mode, armed, until the boat shows it.
+    /// Requests that the boat arm and enter a mode, until it reports both.
     fn engage(&mut self, now: SimTime, wanted: RoverMode, out: &mut Vec<u8>) {
         let asked = self.asked.filter(|asked| asked.is_armed);
         let is_done = asked.is_some_and(|asked| asked.mode == wanted && asked.is_shown);
@@ -147,8 +147,8 @@ impl Mavlink {
         self.write_arming(true, out);
     }
 
-    /// Requests mode HOLD, disarmed, if the boat is ours: until the boat shows it, and whenever the
-    /// boat is driven again.
+    /// If the boat is ours, requests mode HOLD, disarmed, until the boat reports it, and again
+    /// whenever the boat is being driven.
     fn stand_by(&mut self, now: SimTime, out: &mut Vec<u8>) {
         let Some(shown) = self
             .boat
@@ -260,7 +260,7 @@ impl Mavlink {
                 speed_m_s,
             } => {
                 let (east, north) = math::sin_cos(heading_deg.to_radians());
-                // Without a yaw, which the velocity implies. With a yaw or a yaw rate, Rover takes
+                // Send no yaw, which the velocity implies. With a yaw or a yaw rate, Rover takes
                 // the sign of `vx`, which points north, for the sign of the speed in every frame: a
                 // boat ordered south goes astern (Rover/GCS_MAVLink_Rover.cpp,
                 // handle_set_position_target_local_ned; seen with ArduRover's SITL).
@@ -347,7 +347,7 @@ impl Codec for Mavlink {
                 out,
             );
         }
-        // Not before the boat is known: ArduPilot also answers a broadcast request, as would every
+        // Wait until the boat is known: ArduPilot also answers a broadcast request, as would every
         // other system on the link.
         if self.boat.system.is_some() && now >= self.streams_due {
             self.streams_due = now + SimTime::from_s(STREAMS_AGAIN_S);
@@ -499,7 +499,7 @@ impl Codec for Mavlink {
     }
 }
 
-/// The mode in which a boat executes a task: Rover's, as shown, and by name.
+/// The mode in which a boat executes a task: Rover's mode, the mode to be reported, and the name.
 fn mode_of(task: Task) -> (RoverMode, Mode, &'static str) {
     match task {
         Task::StationKeep => (RoverMode::Loiter, Mode::StationKeep, "LOITER"),

@@ -12,11 +12,11 @@ use ::mavlink::Message;
 use primitives::SimTime;
 use primitives::frame::Ned;
 
-/// Time without a reported fix after which a receiver has none, s.
+/// Time (s) without a reported fix after which a receiver counts as having none.
 const FIX_TYPE_AGE_MAX_S: f64 = 2.0;
-/// Time without ATTITUDE after which the heading comes from the position message, s.
+/// Time (s) without ATTITUDE after which the heading comes from the position message.
 const ATTITUDE_AGE_MAX_S: f64 = 1.0;
-/// Lifetime of the set-point shown by the boat, s: three of its reports.
+/// Lifetime of the set-point reported by the boat, s: three report intervals.
 const TARGET_AGE_MAX_S: f64 = 0.6;
 /// Maximum number of ground stations stored.
 const STATIONS_MAX: usize = 8;
@@ -34,7 +34,7 @@ pub(super) struct Asked {
     pub(super) mode: RoverMode,
     pub(super) is_armed: bool,
     pub(super) at: SimTime,
-    /// Whether the boat has shown the mode.
+    /// Whether the boat has reported the mode.
     pub(super) is_shown: bool,
 }
 
@@ -70,9 +70,9 @@ pub(super) struct Boat {
     position_ms: Option<u32>,
     attitude_at: SimTime,
     has_volts: bool,
-    /// The ordered heading shown in GUIDED (degrees), and when it arrived.
+    /// The ordered heading reported in GUIDED (degrees), and when it arrived.
     ordered: Option<(SimTime, f64)>,
-    /// When the boat last showed a destination in GUIDED.
+    /// When the boat last reported a destination in GUIDED.
     position_target_at: SimTime,
     texts: StatusTexts,
     /// Other ground stations that were heard: system and component.
@@ -106,7 +106,7 @@ impl Boat {
 
     /// The target of messages for the boat.
     pub(super) fn target(&self) -> Target {
-        // No target means a broadcast: a set-point of zero may be for everyone.
+        // While the boat is unknown, broadcast: a zero set-point may go to everyone.
         let system = self.system.unwrap_or(0);
         Target {
             system,
@@ -248,14 +248,16 @@ impl Boat {
                 is_armed: true,
             });
         match message {
-            // The ordered heading, from version 4.7 on; in earlier versions 0, except for the
+            // From version 4.7 on, this contains the ordered heading; in earlier versions 0, or the
             // bearing to a position.
             MavMessage::NAV_CONTROLLER_OUTPUT(shown) if is_guided => {
                 self.ordered = Some((now, f64::from(shown.nav_bearing)));
             }
-            // Rover sends it only for positions, and when it keeps station without a set-point.
+            // Rover sends this message only for positions, and when it keeps station without a
+            // set-point.
             MavMessage::POSITION_TARGET_GLOBAL_INT(_) if is_guided => self.position_target_at = now,
-            // Nothing it shows is ours until it shows that it is armed in GUIDED.
+            // Until the boat reports that it is armed in GUIDED, no set-point that it reports is
+            // ours.
             MavMessage::NAV_CONTROLLER_OUTPUT(_) | MavMessage::POSITION_TARGET_GLOBAL_INT(_) => {
                 (self.ordered, self.position_target_at) = (None, SimTime::LONG_AGO);
             }
@@ -322,7 +324,8 @@ impl Boat {
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
                 command, result, ..
             }) => {
-                // Only for commands that we send ourselves: a reply goes to everyone on the link.
+                // Accept replies only to commands that we send ourselves: a reply goes to everyone
+                // on the link.
                 let is_orderly = matches!(
                     command,
                     MavCmd::MAV_CMD_DO_SET_MODE
@@ -357,8 +360,7 @@ impl Boat {
             hdg,
             ..
         } = *position;
-        // Repetitions carry no news.
-        // A router may deliver a message by two routes.
+        // Ignore repeats: a router may deliver a message by two routes.
         if self.position_ms.replace(time_boot_ms) == Some(time_boot_ms) {
             return;
         }
@@ -374,7 +376,8 @@ impl Boat {
             north: 0.01 * f64::from(vx),
             east: 0.01 * f64::from(vy),
         }));
-        // The position is an estimate that continues without a receiver; the fix shows its quality.
+        // The position is an estimate that continues without a receiver; the fix states its
+        // quality.
         let fix = self
             .fix
             .filter(|(at, _)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);

@@ -16,8 +16,8 @@ use primitives::SimTime;
 /// Time after which an unanswered message is sent again (s), and the maximum number of attempts.
 const AGAIN_S: f64 = 1.0;
 const TRIES_MAX: u32 = 5;
-/// Maximum distance of a home from the recovery point for it to be the one that was set, 1e-7
-/// degrees: one metre.
+/// Maximum distance of a home from the recovery point at which it counts as the one that was set,
+/// 1e-7 degrees: one metre.
 const SAME_E7: u32 = 90;
 
 /// The upload.
@@ -38,9 +38,9 @@ enum Phase {
     Home,
     /// The boat requests items, and then accepts them.
     Items,
-    /// None: the boat has accepted everything.
+    /// No next step: the boat has accepted everything.
     Done,
-    /// None: the boat has refused the mission, for the given reason.
+    /// No next step: the boat has refused the mission, for this reason.
     Refused(String),
 }
 
@@ -58,7 +58,7 @@ impl Upload {
             autocontinue: 1,
             ..MISSION_ITEM_INT_DATA::default()
         };
-        // Speed over the ground, without a throttle.
+        // Specifies the speed over the ground, and no throttle.
         let speed = MISSION_ITEM_INT_DATA {
             param1: 1.0,
             param2: speed_m_s as f32,

@@ -7,29 +7,30 @@ use primitives::frame::Ned;
 /// A report from a boat.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Report {
-    /// A fix from its receiver.
+    /// A fix from the boat's receiver.
     Fix(Fix),
     /// Velocity over the ground, m/s.
     Velocity(Ned),
-    /// Its heading.
+    /// The boat's heading.
     Heading(Heading),
-    /// Its attitude, roll and pitch in degrees.
+    /// The boat's attitude: roll and pitch in degrees.
     Tilt([f64; 2]),
     /// The receiver's time of day.
     Clock(TimeOfDay),
-    /// Its mode, and who commands it.
+    /// The boat's mode, and who commands the boat.
     Control(ControlReport),
-    /// A set-point for it from another sender was received.
+    /// A set-point for the boat from another sender was received.
     ForeignOrder,
     /// Another ground station was heard for the first time; operators are notified.
     Station(String),
-    /// Its battery and consumers.
+    /// The boat's battery and consumers.
     Power(Power),
-    /// Its current error; `None` means no error.
+    /// The boat's present error; `None` means no error.
     Error(Option<String>),
     /// A single message for operators.
     Notice(String),
-    /// The position of its home, where it goes for recovery: latitude and longitude, degrees.
+    /// The position of the boat's home, where it goes for recovery: latitude and longitude,
+    /// degrees.
     Home([f64; 2]),
 }
 
@@ -53,7 +54,7 @@ pub struct Fix {
     pub time: Option<TimeOfDay>,
     /// The position; `None` if the receiver does not know it.
     pub at: Option<LatLon>,
-    /// Its quality, if reported.
+    /// The fix quality, if reported.
     pub quality: Option<FixQuality>,
     /// The horizontal dilution of precision, if reported.
     pub hdop: Option<f64>,
@@ -77,7 +78,7 @@ pub struct Heading {
 pub enum North {
     /// True north.
     True,
-    /// That of the boat's compass, which the gateway file states.
+    /// The reference of the boat's compass, as stated in the gateway file.
     Compass,
 }
 

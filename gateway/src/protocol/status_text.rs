@@ -3,10 +3,10 @@
 use crate::mavlink::dialect::STATUSTEXT_DATA;
 use primitives::SimTime;
 
-/// Maximum delay of the next chunk before a message is shown without it, s.
+/// Maximum delay (s) of the next chunk before a message is shown without it.
 const CHUNK_AGE_MAX_S: f64 = 1.0;
-/// Maximum bytes of a message: ArduPilot's have up to 256, and a stranger must not be able to
-/// exhaust the memory.
+/// Maximum bytes of a message: ArduPilot's have up to 256, and an unknown sender must not be able
+/// to exhaust memory.
 const TEXT_MAX: usize = 1000;
 /// Maximum number of incomplete messages.
 const UNFINISHED_MAX: usize = 4;
@@ -90,7 +90,7 @@ impl Unfinished {
     }
 }
 
-/// Join before decoding, because a chunk may end within a character.
+/// Decodes chunks that have been joined: a single chunk may end within a character.
 fn in_words(letters: &[u8]) -> String {
     String::from_utf8_lossy(letters).trim().to_owned()
 }
@@ -101,7 +101,7 @@ mod tests {
 
     const LONG: &str = "PreArm: Compass not calibrated and the accelerometers are inconsistent at 12° and 50°, please wait a while";
 
-    /// The messages shown for these chunks, which arrive every 0.1 s, and 2 s later.
+    /// The messages shown for these chunks, which arrive 0.1 s apart, and 2 s after the last.
     fn said(chunks: &[(u16, u8, &[u8])]) -> Vec<String> {
         let mut texts = StatusTexts::default();
         let mut said = vec![];

@@ -65,7 +65,7 @@ impl Codec for Surveyor {
             Ok(sentence) => report(&sentence, take),
             Err(ParseError::Unknown { address }) => {
                 // Names arrive over a link that may carry noise: without a limit they would exhaust
-                // the memory.
+                // memory.
                 let room = unknown.len() < UNKNOWN_MAX;
                 let name = if room || unknown.contains_key(&address) {
                     address
@@ -90,7 +90,7 @@ impl Codec for Surveyor {
     }
 
     fn shown(&self, command: Command) -> Shown {
-        // Compared with what was sent: whole percentages.
+        // In whole percentages, as sent: the boat's report is compared with this.
         let nmea::Command {
             mode,
             heading_deg,
@@ -245,7 +245,7 @@ fn report(sentence: &Sentence, take: &mut dyn FnMut(Report)) {
         }
         Sentence::Rmc(rmc) => {
             report_velocity(rmc.course_deg, rmc.speed_kn, take);
-            // It contains no quality, only whether there is a fix.
+            // RMC reports no quality, only whether there is a fix.
             let quality = (!rmc.valid).then_some(FixQuality::NONE);
             take(Report::Fix(Fix {
                 time: rmc.time,
@@ -358,7 +358,7 @@ fn sentence(command: Command) -> nmea::Command {
             Mode::Speed,
             [Some(heading_deg), Some(speed_m_s / M_S_PER_KN), None],
         ),
-        // Empty fields, as sent by the one public driver that has used it.
+        // Empty fields, as sent by the only public driver that has used this mode.
         Command::Task(Task::StationKeep) => pseac(Mode::StationKeep, [None; 3]),
         Command::Task(Task::GoToErp) => pseac(Mode::GoToErp, [Some(0.0); 3]),
         Command::Task(Task::Mission) => pseac(Mode::Waypoint, [Some(0.0); 3]),

@@ -20,9 +20,9 @@ use primitives::angle::{compass_deg_from_rad, wrap_pi};
 use primitives::frame::LatLon;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum difference between compass and true heading for them to be equal, rad.
+/// Maximum difference (rad) at which compass and true heading count as equal.
 const SAME_HEADING_RAD: f64 = 0.02;
-/// Minimum speed at which the course indicates the heading, m/s.
+/// Minimum speed (m/s) at which the course indicates the heading.
 const COURSE_MIN_M_S: f64 = 1.0;
 /// Maximum number of positions stored.
 const FIXES_MAX: usize = 20_000;
@@ -31,16 +31,16 @@ const NAMES_MAX: usize = 64;
 /// Maximum number of vehicles listed if none of them is the boat.
 const HEARD_MAX: usize = 8;
 
-/// Allowed error of the boat's clock relative to this machine's, s: fixes arrive shortly after
-/// their time.
+/// Allowed error of the boat's clock relative to this machine's, s: fixes arrive shortly after the
+/// time stated in them.
 // An offset of half a minute is not latency: one of the clocks is wrong, and recordings cannot be
 // compared.
 const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
 /// The days in 1024 weeks, less one for the time of day.
 const GPS_WEEKS_DAYS: i64 = 7167;
 
-/// A moment by both the check's clock and the host's clock. Reading them separately would look like
-/// a fault of the boat's clock.
+/// A moment by both the check's clock and the host's clock. Reading them at different times would
+/// look like a fault of the boat's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostTime {
     /// The moment, by the check's clock.
@@ -464,7 +464,7 @@ impl SensorCheck {
     fn apply(&mut self, now: SimTime, report: Report) {
         self.note_usable(now, &report);
         match report {
-            // RMC only shows whether there is one.
+            // RMC only reports whether there is one.
             Report::Fix(fix) if fix.quality.is_some() => {
                 if let Some(at) = fix.at
                     && fix.quality.is_some_and(FixQuality::is_fix)

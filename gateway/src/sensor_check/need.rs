@@ -46,7 +46,7 @@ const FOR_A_FIX: &str = "without a fix it cannot be driven";
 const FOR_A_HEADING: &str = "without a heading it cannot be driven";
 const FOR_ITS_BATTERY: &str = "its battery would not be monitored";
 const UNKNOWN_CONTROL: &str =
-    "it is unknown who commands the boat, which can be armed only with control.assumed = true";
+    "it is unknown who commands the boat, so it can be armed only with control.assumed = true";
 const SURVEYOR_NEEDS: [Need; 5] = [
     need(Usable::Position, "a position", &["GGA", "RMC"], FOR_A_FIX),
     need(
@@ -134,7 +134,7 @@ impl SensorCheck {
         let named: Vec<_> = named.collect();
         let names = kinds.join(" or ");
         if *usable == Usable::Position && self.no_fix().is_some() {
-            // Its quality is reported instead.
+            // The fix quality is reported instead.
             return None;
         }
         let lost = named

@@ -8,7 +8,7 @@ const TELEMETRY: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5
     $PSEAD,T,58.7,20,-10,,T,2,1*7A\r\n\
     $PTQM0,1*35\r\n";
 
-/// These sentences ten times; the time of a GGA advances each time.
+/// The check after these sentences have arrived ten times; the time in a GGA advances each time.
 fn checked(text: &str, hz: f64) -> SensorCheck {
     let mut check = SensorCheck::new(&crate::config::default_gateway());
     for i in 0..10 {

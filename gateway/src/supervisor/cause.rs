@@ -24,7 +24,7 @@ pub enum Cause {
     /// The battery voltage was low.
     #[error("the battery is low")]
     BatteryLow,
-    /// The boat was not, or not alone, commanded by this gateway.
+    /// This gateway did not have sole control of the boat.
     #[error("{0}")]
     Control(ControlFault),
     /// The boat has no known recovery point.
@@ -100,7 +100,7 @@ pub enum NavFault {
     #[error("the compass is off by {:.0} degrees, judged by the course over the ground", .0.abs())]
     CompassOff(f64),
     /// The reported speed is below the speed computed from positions (m/s).
-    #[error("the reported speed is lower than the speed implied by its positions, {0:.1} m/s")]
+    #[error("the reported speed is lower than the speed implied by the positions, {0:.1} m/s")]
     SpeedTooLow(f64),
 }
 
@@ -108,15 +108,16 @@ impl Cause {
     /// Whether the boat still receives commands, knows its position and heading, and responds to
     /// thrust.
     pub(crate) fn leaves_control(self) -> bool {
-        // Only for these causes may a file choose a task after a failsafe. A table of every cause
-        // and action would let a boat keep station on a lost fix.
+        // Only for these causes may a file choose a task after a failsafe. Allowing any action for
+        // every cause would let a boat keep station without a fix.
         matches!(
             self,
             Cause::OrderStale | Cause::BatteryLow | Cause::Geofence | Cause::Hung(_)
         )
     }
 
-    /// Rank among the causes that leave control: the gravest decides what the boat does.
+    /// Severity among the causes that leave the boat controllable: the most severe decides what the
+    /// boat does.
     pub(super) fn gravity(self) -> u8 {
         match self {
             Cause::Geofence => 2,

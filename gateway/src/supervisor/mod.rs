@@ -19,8 +19,8 @@
 //! ```
 //!
 //! *Ready* means: link up, control granted, navigation sound, inside the geofence, battery not low,
-//! order fresh. *Fit* is the same without the order. Only in `Armed` do we send anything that moves
-//! the boat, and only while it is ready in this very step and no other boat is in the way. After a
+//! order fresh. *Fit* is the same without the order. We send set-points that move the boat only in
+//! `Armed`, and only if it is ready in that very step and no other boat is in the way. After a
 //! failsafe the boat stops, unless the gateway file assigns a task of the boat's own controller to
 //! that cause and nothing that the task needs has failed. The state machine has no clock:
 //! `Conditions` state what is fresh, sound or granted now, so that a test can try every state with
@@ -40,10 +40,10 @@ use thiserror::Error;
 pub(crate) struct Conditions {
     /// Whether bytes can reach the boat.
     pub(crate) link: bool,
-    /// How long the gateway was not running until now (s), if its guard may have stopped the boat
-    /// meanwhile.
+    /// Length of the gap (s), if the gateway was not running until now and its guard may have
+    /// stopped the boat.
     pub(crate) hung_s: Option<f64>,
-    /// Why this gateway is not the only one commanding the boat, if so.
+    /// Why this gateway does not have sole control of the boat, if it does not.
     pub(crate) control: Option<ControlFault>,
     /// The navigation fault, if any.
     pub(crate) nav: Option<NavFault>,
@@ -64,7 +64,7 @@ pub(crate) struct Conditions {
 }
 
 impl Conditions {
-    /// The conditions before anything was received.
+    /// The conditions before anything has been received.
     pub(crate) const UNKNOWN: Conditions = Conditions {
         link: false,
         hung_s: None,
@@ -140,9 +140,9 @@ pub enum State {
 /// The action to send the boat now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Action {
-    /// Standby; after thrust, zero thrust comes first.
+    /// Standby, preceded by zero thrust if there was thrust.
     Standby,
-    /// Thrust zero.
+    /// Zero thrust.
     Zero,
     /// The order's set-point.
     Follow,
@@ -153,7 +153,7 @@ pub(crate) enum Action {
 /// The reason for refusing a request.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum Refusal {
-    /// These conditions are missing.
+    /// The boat lacks these conditions.
     #[error("missing: {}", .0.iter().map(|cause| cause.missing()).collect::<Vec<_>>().join("; "))]
     NotReady(Vec<Cause>),
     /// An E-stop for these boats is in force.
@@ -178,14 +178,14 @@ pub(crate) struct Supervisor {
     state: State,
     /// E-stops in force: boat, fleet.
     stops: [bool; 2],
-    /// Whether the boat arms once without a request, as soon as it is ready.
+    /// Whether the boat arms itself once, as soon as it is ready.
     arms_itself: bool,
     actions: FailsafeActions,
 }
 
 impl Supervisor {
-    /// A disarmed supervisor. With `arms_itself` it arms when first ready, unless an operator makes
-    /// a request before. After any later stop it must be armed on request, unless
+    /// A disarmed supervisor. With `arms_itself`, it arms when first ready, unless an operator
+    /// makes a request first. After any later stop, it arms only on request, unless
     /// [`Conditions::may_rearm`] is set.
     pub(crate) fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
         Supervisor {
@@ -226,10 +226,10 @@ impl Supervisor {
         if arms_itself && now.missing().is_empty() {
             self.state = State::Armed;
         }
-        // After the request: if arming is granted and fails in the same step, the state becomes a
-        // failsafe with its cause.
+        // Check after handling the request: if arming is granted and fails in the same step, the
+        // state becomes a failsafe with its cause.
         self.check_failsafes(now);
-        // Any change of state or request uses up self-arming.
+        // Any change of state, and any request, ends self-arming.
         self.arms_itself &= self.state == State::Disarmed && request.is_none();
         let changed = (self.state != before).then_some(before);
         Step {
@@ -297,7 +297,8 @@ impl Supervisor {
         State::Failsafe { cause, task }
     }
 
-    /// Continues a task after a failsafe until the boat cannot execute it or a graver cause occurs.
+    /// Continues a task after a failsafe until the boat cannot execute it or a more severe cause
+    /// occurs.
     fn watch_task(&self, now: &Conditions, cause: Cause, task: Task) -> State {
         if let Some(cause) = now.hindrance(task) {
             return State::Failsafe { cause, task: None };
@@ -315,14 +316,14 @@ impl Supervisor {
             Cause::Geofence => self.actions.geofence,
             Cause::BatteryLow => self.actions.battery_low,
             Cause::Hung(_) => self.actions.hung,
-            // The boat has no link or another master, lost its position or heading, or does not
-            // respond to thrust.
+            // The boat has no link, is controlled by someone else, has lost its position or
+            // heading, or does not respond to thrust.
             _ => FailsafeAction::Standby,
         };
         match action {
             FailsafeAction::Standby => None,
-            // For four causes only. With an action for every cause, a user could let a boat keep
-            // station on a lost fix.
+            // Only for four causes: if every cause had an action, a user could let a boat keep
+            // station without a fix.
             FailsafeAction::StationKeep => Some(Task::StationKeep),
             FailsafeAction::GoToErp => Some(Task::GoToErp),
         }
@@ -346,10 +347,10 @@ impl Supervisor {
 }
 
 impl Conditions {
-    /// Reasons against driving the boat, gravest first.
+    /// Reasons not to drive the boat, most severe first.
     fn causes(&self) -> impl Iterator<Item = Cause> {
         let link = (!self.link).then_some(Cause::LinkLost);
-        // Unknown without navigation.
+        // Without navigation, this is unknown.
         let geofence = (!self.inside && self.nav.is_none()).then_some(Cause::Geofence);
         let battery = self.battery_low.then_some(Cause::BatteryLow);
         let order = (!self.order_fresh).then_some(Cause::OrderStale);
@@ -363,7 +364,8 @@ impl Conditions {
             .flatten()
     }
 
-    /// The failsafe cause of a delegated boat: no order is needed, but some tasks need more.
+    /// The failsafe cause of a delegated boat: it needs no order, but some tasks have other
+    /// conditions.
     fn unfit_failsafe(&self, task: Task) -> Option<Cause> {
         self.causes()
             .find(|cause| *cause != Cause::OrderStale)
@@ -377,14 +379,14 @@ impl Conditions {
             .or(self.missing_for(task))
     }
 
-    /// The condition beyond the common ones that this task still needs, if any.
+    /// The condition that this task lacks beyond the common ones, if any.
     fn missing_for(&self, task: Task) -> Option<Cause> {
         (task == Task::GoToErp && !self.recovery_point).then_some(Cause::NoRecoveryPoint)
     }
 
     /// All conditions that are missing for arming.
     pub(crate) fn missing(&self) -> Vec<Cause> {
-        // The reported mode means nothing while we do not command the boat.
+        // While we do not command the boat, the mode that it reports means nothing.
         let is_reported = |cause: &Cause| {
             matches!(
                 cause,

@@ -24,7 +24,7 @@ fn all_actions() -> Vec<FailsafeActions> {
         geofence,
         battery_low,
         hung,
-        // Used by the bridge, not by the supervisor.
+        // The bridge uses this, not the supervisor.
         rearm_within_s: 0.0,
     };
     [
@@ -249,8 +249,7 @@ fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing
         };
         let Some(task) = task else {
             assert_eq!(step.action, Action::Standby, "{case}");
-            // A requested task with a missing condition stops only if the boat cannot execute it
-            // now or could not before.
+            // A wanted task is missing only if the boat cannot execute it now, or could not before.
             let stays = before.state == after.state;
             assert!(
                 stays || wanted.is_none_or(|task| !can_do(now, task)),

@@ -46,7 +46,7 @@ impl Boat {
                 .scaled(self.speed_m_s * STEP_S);
     }
 
-    /// Its sensor readings if its receiver reports `place`.
+    /// The boat's sensor readings if its receiver reports `place`.
     pub(crate) fn measured(&self, now: SimTime, place: Ned) -> OwnBoat {
         let nav = Nav {
             north_m: place.north,

@@ -12,9 +12,9 @@ const CONTROL_AGE_MAX_S: f64 = 2.0;
 /// The gateway's state as seen from outside.
 #[derive(Debug, Default)]
 pub(crate) struct Oracle {
-    /// How much longer than assumed data may have waited, s.
+    /// Extra time for which data may have waited, beyond the assumed limits, s.
     pub(crate) waited_s: f64,
-    /// When the last valid and newer order arrived.
+    /// When the last order arrived that was valid and newer than its predecessor.
     pub(crate) ordered: Option<SimTime>,
     /// Arrival times of the last valid fix, of the last heading, and of the boat's last report that
     /// we command it.

@@ -52,7 +52,7 @@ fn replacing(pairs: &[&str]) -> impl Fn(&str) -> String + use<> {
     }
 }
 
-/// Changes the body of each sentence, with valid checksums.
+/// Changes the body of each sentence and recomputes the checksums.
 fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
     let mut line = move |line: &str| {
         let body = line

@@ -268,7 +268,7 @@ fn a_peer_that_reads_nothing_for_two_seconds_is_dropped_with_its_unread_data() {
         "{:?}: {reason}",
         down - start
     );
-    // A reset rather than a close, so data in flight is void.
+    // A reset rather than a close, so data in flight is lost.
     let mut waste = Vec::new();
     assert!(
         boat.read_to_end(&mut waste).is_err(),

@@ -76,7 +76,7 @@ fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
     }
 }
 
-/// A boat armed with this order 20 s ago, having been at rest until then.
+/// A boat that was at rest and has been armed, with this order, for 20 s.
 fn ordered(drive: Drive, order: Order) -> Rig {
     let mut plan = plan();
     plan.gateway.drive = drive;
@@ -319,7 +319,7 @@ fn a_pilot_who_takes_over_by_remote_control_keeps_the_boat() {
                 .take()
                 .is_some_and(|reason| reason.contains("secondary control"))
         );
-        // When the pilot returns it, it goes to standby and waits to be armed.
+        // When the pilot hands the boat back, it goes to standby and waits to be armed.
         rig.ardupilot.set_mode(RoverMode::Guided);
         rig.run(2.0);
         assert_eq!(rig.mode(), HOLD);
@@ -459,13 +459,13 @@ fn a_boat_at_rest_is_armed_before_it_is_sent_to_its_recovery_point() {
             (RoverMode::Rtl, true)
         )
     );
-    // If a pilot disarms it on its way, it stays disarmed.
+    // If a pilot disarms the boat on its way, it stays disarmed.
     rig.ardupilot.receive(rig.now, &disarm());
     rig.run(10.0);
     assert!(!rig.mode().1, "{:?}", rig.events);
 }
 
-/// The command of a ground station that disarms the boat.
+/// A ground station's command that disarms the boat.
 fn disarm() -> Vec<u8> {
     let command = COMMAND_LONG_DATA {
         command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
@@ -555,7 +555,7 @@ fn refused_arming_triggers_a_failsafe_with_the_boats_reason() {
     let mut rig = Rig::new();
     rig.order = Some(Order::Hold);
     rig.run(2.0);
-    // From now on it replies but receives nothing.
+    // From now on, the boat replies but receives nothing.
     rig.open.0 = false;
     rig.operator(OperatorCommand::Arm);
     rig.run_until(4.0, |rig| {

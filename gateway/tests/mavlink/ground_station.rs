@@ -1,5 +1,5 @@
 //! An emulated ArduPilot boat and ground stations other than ours: every request is answered as
-//! Rover would.
+//! Rover would answer it.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 
@@ -10,7 +10,7 @@ use gateway::mavlink::dialect::{
     MISSION_CLEAR_ALL_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA,
     MISSION_REQUEST_LIST_DATA, MISSION_SET_CURRENT_DATA, MavCmd, MavFrame, MavMessage,
     MavMissionResult, MavMissionType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, PARAM_VALUE_DATA,
-    PLAY_TUNE_DATA, TIMESYNC_DATA,
+    PLAY_TUNE_DATA, REQUEST_DATA_STREAM_DATA, SET_GPS_GLOBAL_ORIGIN_DATA, TIMESYNC_DATA,
 };
 use messages::Order;
 
@@ -111,24 +111,25 @@ fn requests() -> Vec<Request> {
         target_system,
         target_component,
     };
-    let list = LOG_REQUEST_LIST_DATA::default();
-    let data = LOG_REQUEST_DATA_DATA::default();
     let list = LOG_REQUEST_LIST_DATA {
-        target_system,
-        target_component,
-        ..list
-    };
-    let data = LOG_REQUEST_DATA_DATA {
-        target_system,
-        target_component,
-        ..data
-    };
-    let mut ftp = FILE_TRANSFER_PROTOCOL_DATA {
         target_system,
         target_component,
         ..Default::default()
     };
-    ftp.payload[..4].copy_from_slice(&[7, 0, 1, 4]);
+    let data = LOG_REQUEST_DATA_DATA {
+        target_system,
+        target_component,
+        ..Default::default()
+    };
+    let ftp = FILE_TRANSFER_PROTOCOL_DATA {
+        target_system,
+        target_component,
+        ..Default::default()
+    };
+    let origin = SET_GPS_GLOBAL_ORIGIN_DATA {
+        target_system,
+        ..Default::default()
+    };
     let tune = PLAY_TUNE_DATA {
         target_system,
         target_component,
@@ -136,6 +137,7 @@ fn requests() -> Vec<Request> {
     };
     let no_parameter =
         |reply: &M| matches!(reply, M::PARAM_ERROR(error) if error.param_id.to_str() != Ok(""));
+    let is_unsupported = |reply: &M| matches!(reply, M::STATUSTEXT(text) if text.text.to_str().is_ok_and(|text| text.ends_with(" is not supported")));
     vec![
         (
             M::TIMESYNC(TIMESYNC_DATA {
@@ -153,23 +155,11 @@ fn requests() -> Vec<Request> {
         (M::MISSION_SET_CURRENT(current), |reply| {
             matches!(reply, M::MISSION_CURRENT(_))
         }),
-        (
-            M::LOG_REQUEST_LIST(list),
-            |reply| matches!(reply, M::LOG_ENTRY(entry) if entry.num_logs == 0),
-        ),
-        (
-            M::LOG_REQUEST_DATA(data),
-            |reply| matches!(reply, M::LOG_DATA(data) if data.count == 0),
-        ),
-        // A negative reply to the request with the number 7, opcode 4.
-        (
-            M::FILE_TRANSFER_PROTOCOL(ftp),
-            |reply| matches!(reply, M::FILE_TRANSFER_PROTOCOL(ftp) if ftp.payload[..6] == [8, 0, 1, 129, 1, 4]),
-        ),
-        (
-            M::PLAY_TUNE(tune),
-            |reply| matches!(reply, M::STATUSTEXT(text) if text.text.to_str().is_ok_and(|text| text.contains("PLAY_TUNE"))),
-        ),
+        (M::LOG_REQUEST_LIST(list), is_unsupported),
+        (M::LOG_REQUEST_DATA(data), is_unsupported),
+        (M::FILE_TRANSFER_PROTOCOL(ftp), is_unsupported),
+        (M::SET_GPS_GLOBAL_ORIGIN(origin), is_unsupported),
+        (M::PLAY_TUNE(tune), is_unsupported),
     ]
 }
 
@@ -185,7 +175,7 @@ fn every_request_of_a_ground_station_gets_its_reply() {
 #[test]
 fn the_old_requests_for_fences_and_rally_points_get_a_reply() {
     // FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT, RALLY_FETCH_POINT: number, CRC_EXTRA, length and
-    // place of the target system, as in pymavlink's ardupilotmega.
+    // offset of the target system, as in pymavlink's ardupilotmega.
     for (id, extra_crc, len, target_at) in [
         (160, 78, 12, 8),
         (161, 68, 3, 0),
@@ -211,7 +201,7 @@ const RESULTS: [(u16, [f32; 2], u8); 18] = [
     (60_000, [0.0; 2], 3),
     // DO_START_MAG_CAL and DO_SEND_BANNER, of ArduPilot's own dialect.
     (42_424, [0.0; 2], 3),
-    (42_428, [0.0; 2], 0),
+    (42_428, [0.0; 2], 3),
     (MavCmd::MAV_CMD_NAV_TAKEOFF as u16, [0.0; 2], 3),
     (
         MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES as u16,
@@ -219,13 +209,14 @@ const RESULTS: [(u16, [f32; 2], u8); 18] = [
         0,
     ),
     (MavCmd::MAV_CMD_GET_HOME_POSITION as u16, [0.0; 2], 0),
-    (MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16, [33.0, 0.0], 0),
+    (MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16, [33.0, 0.0], 3),
     (
         MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16,
         [60_000.0, 1e6],
         2,
     ),
-    // An interval below -1, a mode without the flag that it is ArduPilot's, and neither 0 nor 1.
+    // An interval below -1, a mode without the custom-mode flag, and an arming value other than 0
+    // or 1.
     (MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16, [33.0, -2.0], 2),
     (MavCmd::MAV_CMD_DO_SET_MODE as u16, [8.0, 15.0], 2),
     (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16, [0.5, 0.0], 3),
@@ -238,7 +229,7 @@ const RESULTS: [(u16, [f32; 2], u8); 18] = [
         [-1.0, 0.0],
         2,
     ),
-    // Not in Rover's default build, and a rate that its loop cannot reach.
+    // A command that is not in Rover's default build, and a rate that its loop cannot reach.
     (MavCmd::MAV_CMD_NAV_SET_YAW_SPEED as u16, [90.0, 1.0], 3),
     (MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16, [33.0, 1e4], 2),
 ];
@@ -424,7 +415,7 @@ fn a_new_system_number_takes_effect_after_the_reply_to_it() {
         "{:?}",
         station.systems
     );
-    // Orders to the old number are for a different boat.
+    // Commands to the old system number are for a different boat.
     assert_eq!(
         station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]),
         None
@@ -433,6 +424,27 @@ fn a_new_system_number_takes_effect_after_the_reply_to_it() {
     assert_eq!(
         station.command(true, MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16, [0.0; 2]),
         Some(0)
+    );
+}
+
+#[test]
+fn a_stream_request_speeds_telemetry_up_and_never_slows_it_down() {
+    let mut station = Station::new();
+    let mut count = |start_stop, req_message_rate| {
+        station.send(&MavMessage::REQUEST_DATA_STREAM(REQUEST_DATA_STREAM_DATA {
+            req_message_rate,
+            target_system: 1,
+            start_stop,
+            ..Default::default()
+        }));
+        let heard = station.run(10.0);
+        let is_attitude = |message: &&MavMessage| matches!(message, MavMessage::ATTITUDE(_));
+        heard.iter().filter(is_attitude).count()
+    };
+    let counts = [(1, 5), (1, 2), (0, 0)].map(|(start, rate_hz)| count(start, rate_hz));
+    assert!(
+        counts.iter().all(|count| (48..=52).contains(count)),
+        "{counts:?}"
     );
 }
 

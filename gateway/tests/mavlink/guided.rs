@@ -39,7 +39,7 @@ fn goal() -> Ned {
         }
 }
 
-/// A boat in GUIDED, armed, which points east.
+/// A boat in GUIDED, armed and pointing east.
 fn guided() -> Station {
     let mut station = Station::new();
     station.boat.psi_rad = FRAC_PI_2;
@@ -147,7 +147,7 @@ fn positions_in_every_frame_that_rover_takes_are_reached_and_kept() {
         ..Default::default()
     }));
     for message in &messages {
-        // Once is enough, and it is shown.
+        // A destination need be sent only once, and the boat reports it.
         let mut station = guided();
         station.send(message);
         let heard = station.run(60.0);
@@ -445,7 +445,7 @@ fn a_lost_ground_station_stops_the_boat_after_the_time_that_rover_takes() {
         station.run(0.4);
         assert_eq!(station.ardupilot.mode(), mode, "{action}");
         assert_eq!(state(&mut station), MavState::MAV_STATE_CRITICAL);
-        // Whoever takes control of the boat then keeps it, although the station is still lost.
+        // Whoever then takes control of the boat keeps it, although the station is still lost.
         station.ardupilot.set_mode(RoverMode::Guided);
         station.run(10.0);
         assert_eq!(station.ardupilot.mode().0, RoverMode::Guided, "{action}");

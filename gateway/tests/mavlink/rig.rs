@@ -46,7 +46,7 @@ pub(crate) fn plan() -> Plan {
     Plan {
         vehicle: "blue_one".to_owned(),
         gateway: gateway.unwrap_or_else(|e| panic!("{e}")),
-        // A declination large enough to show if it were used.
+        // A declination so large that any use of it would be noticed.
         site: Some(Site {
             length_m: 1.2,
             field: game.field,
@@ -59,7 +59,7 @@ pub(crate) fn plan() -> Plan {
     }
 }
 
-/// The origin of its field.
+/// The origin of the field.
 pub(crate) fn datum() -> LatLon {
     plan().site.expect("the rig has one").field.plan.datum
 }
@@ -169,7 +169,7 @@ impl Rig {
         }
     }
 
-    /// Passes an input to the second gateway, which the boat also receives.
+    /// Passes an input to the second gateway, whose output the boat also receives.
     pub(crate) fn put_second(&mut self, input: &Input) {
         let Some(second) = &mut self.second else {
             return;

@@ -1,4 +1,4 @@
-//! A ground station at an emulated ArduPilot boat, in memory. The test controls time.
+//! A ground station connected in memory to an emulated ArduPilot boat. The test controls time.
 
 use crate::boat::{Boat, STEP_S};
 use crate::rig::datum;
@@ -120,12 +120,12 @@ impl Station {
         self.framer.counts().unknown.get(&id).copied().unwrap_or(0)
     }
 
-    /// The result of a command, as COMMAND_LONG or COMMAND_INT.
+    /// The result of a command sent as COMMAND_LONG or COMMAND_INT.
     pub(crate) fn command(&mut self, is_long: bool, command: u16, params: [f32; 2]) -> Option<u8> {
         self.command_at(is_long, command, [params[0], params[1], 0.0, 0.0], (0, 0))
     }
 
-    /// The same with a position, 1e-7 degrees.
+    /// Like [`Station::command`], with a position, 1e-7 degrees.
     pub(crate) fn command_at(
         &mut self,
         is_long: bool,

@@ -1,5 +1,4 @@
-//! Edge cases: content that real peers send beyond their manuals, and content that no peer should
-//! send.
+//! Edge cases: undocumented content that real peers send, and content that no peer should send.
 
 use gateway::nmea::{Command, ControlState, Hdg, Mode, Sentence, Talker};
 use primitives::LatLon;

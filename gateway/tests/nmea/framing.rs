@@ -78,7 +78,7 @@ fn framed(pieces: impl IntoIterator<Item = impl AsRef<[u8]>>) -> (Vec<String>, C
     (found, framer.counts())
 }
 
-/// Eventful streams: sentences, fragments, noise.
+/// Streams of sentences, fragments and noise.
 fn stream() -> impl Strategy<Value = Vec<u8>> {
     let piece = prop_oneof![
         4 => Just(GGA.as_bytes().to_vec()),

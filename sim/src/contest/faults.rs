@@ -14,8 +14,8 @@ pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {
         &scenario.seeds(),
         scenario.rules.time_limit,
     );
-    // Faults of sensors and thrusters belong to the world. The seed determines the spans before the
-    // game, so snapshots contain none and processes agree.
+    // Faults of sensors and thrusters belong to the world. The seed determines the fault spans
+    // before the game, so snapshots contain none and processes agree.
     spans
         .into_iter()
         .filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost))

@@ -51,7 +51,7 @@ pub struct Contest {
     work: Work,
     /// Identifies the game in snapshots.
     scenario_mark: u64,
-    /// Inputs since the last request, if they are kept.
+    /// Inputs since the last [`Contest::take_inputs`], if they are kept.
     given: Option<Vec<Input>>,
 }
 
@@ -141,7 +141,7 @@ impl Contest {
         &self.scenario
     }
 
-    /// The game of `scenario` with another seed. An E-stop or halt of this game stays in force.
+    /// The game of `scenario` with this seed. An E-stop or halt of this game stays in force.
     ///
     /// # Errors
     /// As for [`Contest::new`].
@@ -292,8 +292,8 @@ impl Contest {
             } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
-            // In the recorded order among all other inputs: in a replay, the order of inputs and
-            // ticks must not depend on clocks.
+            // Ticks keep their recorded order among all other inputs: in a replay, the order of
+            // inputs and ticks must not depend on clocks.
             Input::Played => self.advance(),
         }
     }
@@ -465,15 +465,15 @@ impl Contest {
 
     /// Advances to the next decision or the end of the game.
     pub fn advance(&mut self) {
-        // Once per decision, before any tick: if orders expired within a decision, the game would
-        // depend on the time of this check.
+        // Expire orders once per decision, before any tick: if they expired within a decision, the
+        // game would depend on the time of this check.
         self.expire_orders();
         self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {
             if self.is_over() {
                 break;
             }
-            // In this order: a fault silences an agent before its orders arrive, and real boats
+            // The order matters: a fault silences an agent before its orders arrive, and real boats
             // take their reported positions before anything moves.
             self.begin_and_end_faults();
             self.deliver_orders();
@@ -554,10 +554,11 @@ impl Contest {
             },
             events,
         );
-        // After the referee, which would otherwise never see a boat enter the circle.
+        // Set boats back after the referee, which would otherwise never see a boat enter the
+        // circle.
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;
-        // Only before decisions, because no one reads the sensors in between.
+        // Read the sensors only before decisions, because no one uses them in between.
         if tick.is_multiple_of(u64::from(scenario.ticks_per_decision)) {
             world.read_sensors();
         }

@@ -11,7 +11,7 @@ use rules::Directive;
 use scenario::boat::Hold;
 
 /// Radius within which a station-keeping boat rests, m.
-// Less than the noise of a satellite receiver would never let a boat rest.
+// A radius below the noise of a satellite receiver would never let a boat rest.
 const STATION_RADIUS_M: f64 = 2.0;
 /// Return speed of a station-keeping boat per distance beyond this radius, 1/s.
 const STATION_RETURN_PER_S: f64 = 0.5;
@@ -19,7 +19,7 @@ const STATION_RETURN_PER_S: f64 = 0.5;
 impl Contest {
     /// Sends an order to a vehicle. It is in force from its arrival until the next arrival or its
     /// expiry. A real boat receives it over a real link instead of the simulated one. `given_at` is
-    /// the time of the answered picture, limited to the present.
+    /// the time of the answered picture, capped at the present.
     ///
     /// # Errors
     /// [`BadOrder`] for invalid numbers; the vehicle then holds.
@@ -137,7 +137,7 @@ impl Contest {
         }
     }
 
-    /// Sets the stations of boats that start to hold and keep station, and clears all others.
+    /// Sets the station of each station-keeping boat that starts to hold, and clears all others.
     pub(super) fn update_stations(&mut self) {
         for i in 0..self.state.stations.len() {
             let vehicle = VehicleId::at(i);
@@ -153,7 +153,7 @@ impl Contest {
         }
     }
 
-    /// Makes a vehicle hold at once. Uses no radio, and cancels orders in transit.
+    /// Makes a vehicle hold at once. Bypasses the radio, and cancels orders in transit.
     pub fn hold(&mut self, vehicle: VehicleId) {
         self.note(Input::Held(vehicle));
         self.hold_now(vehicle.index());

@@ -38,7 +38,7 @@ pub enum RestoreError {
 }
 
 impl Contest {
-    /// The changing state as bytes, marked with its game. A contest of the same game restored from
+    /// The changing state as bytes, tagged with the game. A contest of the same game restored from
     /// them continues bit for bit. Inputs kept for [`Contest::take_inputs`] are not included.
     pub fn snapshot(&self) -> Vec<u8> {
         // Sea, faults and contact engine are omitted: they are functions of scenario, seed and
@@ -60,7 +60,7 @@ impl Contest {
         )
     }
 
-    /// Restores the state from a snapshot of the same game, earlier or later.
+    /// Restores the state from a snapshot of the same game, taken earlier or later.
     ///
     /// # Errors
     /// [`RestoreError`]; the contest then remains unchanged.
@@ -97,13 +97,13 @@ impl Contest {
     /// A contest in the same state whose later random values come from `seed`.
     ///
     /// # Errors
-    /// [`NoStart`], which would have occurred before in the same game with its original seed.
+    /// [`NoStart`] if the game could not have started with its original seed either.
     pub fn reseeded(&self, seed: u64) -> Result<Contest, NoStart> {
         let after_s = self.now().as_s();
         self.continued(|scenario| scenario.reseed.push(Reseed { after_s, seed }))
     }
 
-    /// A contest in the same state that continues in another sea.
+    /// A contest in the same state that continues in a different sea.
     ///
     /// # Errors
     /// [`NoStart`] if the seed's values do not suit this sea.
@@ -140,15 +140,16 @@ impl Contest {
         let mut hash = xxh3::Xxh3::new();
         hash.update(&xxh3::xxh3_128(&bytes(&(self.world.state(), standing))).to_le_bytes());
         for logged in events {
-            // In recorded form, field by field: changing only the Rust types must not change a
-            // digest.
+            // Hash events in recorded form, field by field: changing only the Rust types must not
+            // change a digest.
             let record = messages::EventRecord::from(*logged);
             hash.update(&record.tick.to_le_bytes());
             hash.update(&[record.kind]);
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
         }
-        // Only if present, so that adding radios did not change the digests of games without them.
+        // Hash these only if present, so that adding radios did not change the digests of games
+        // without them.
         if self.radio.is_some()
             || self.sightings.is_some()
             || self.watchdogs.iter().any(Option::is_some)

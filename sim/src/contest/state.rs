@@ -66,7 +66,7 @@ impl Contest {
         );
         for (i, boat) in standing.vehicles.iter().enumerate() {
             let Some(flag) = boat.carrying else { continue };
-            // Three rules interact here, and each of them could break this.
+            // Three rules interact here, and each of them could break this invariant.
             assert!(
                 boat.in_play && !boat.tagged && !boat.outside,
                 "vehicle {i} carries a flag out of play"

@@ -32,8 +32,8 @@ pub fn accept(
     // A valid ticket shows that the agent is present, whether in time or not.
     accepted.back = agents.welcome_back(message.ticket);
     let seq = message.stamp.seq;
-    // A duplicate: the sim repeats pictures and agents repeat replies, which replaces
-    // acknowledgements.
+    // A duplicate: instead of acknowledging messages, the sim repeats pictures and agents repeat
+    // replies.
     if own.iter().any(|vehicle| agents.has_taken(*vehicle, seq)) {
         return accepted;
     }

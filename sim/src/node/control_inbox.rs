@@ -154,8 +154,8 @@ mod tests {
             [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]
         );
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
-        // Alternating stops and queries do not fill the inbox either: no release is left behind
-        // after the stop that it ends.
+        // Alternating stops and queries do not fill the inbox either: the last stop stays the last
+        // one.
         for i in 0..1000 {
             send(
                 &inbox,

@@ -17,8 +17,8 @@ pub(super) fn play(
 ) -> Result<(), NodeError> {
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
-        // Before sending the pictures: then the recording of a decision is complete even if the
-        // game is killed while agents compute.
+        // Record before sending the pictures: then the recording of a decision is complete even if
+        // the game is killed while agents compute.
         server.record();
         server.send_pictures()?;
         server.send_frame()?;

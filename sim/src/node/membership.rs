@@ -2,7 +2,6 @@
 //! with one list per role.
 //! A node that joins gets a ticket and sends it with every message. This module uses neither
 //! network nor clock: the server passes in messages and acts on the results.
-//! the server passes in messages and acts on the results.
 
 use messages::{JoinReply, JoinRequest, Role};
 use primitives::{SimTime, VehicleId};
@@ -58,12 +57,12 @@ impl Membership {
 
     /// Handles a join request at this time of the game. `ticket` becomes the node's ticket if it
     /// joins. A node that requests its own vehicles again gets them with the new ticket, since the
-    /// reply was lost.
+    /// first reply may have been lost.
     pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
-        // Must be equal: two versions may agree on messages but differ in rounding, and so in the
-        // game.
+        // The versions must be equal: two versions may agree on messages but differ in rounding,
+        // and so in the game.
         if request.version != primitives::VERSION {
             let theirs = &request.version;
             let ours = primitives::VERSION;

@@ -44,7 +44,8 @@ pub fn serve(
         // A real boat does not wait while agents compute.
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
-    // Before the hub opens: a game whose boats do not fit is rejected before any node joins.
+    // Create the contest before the hub opens: a game whose boats do not fit is rejected before any
+    // node joins.
     let contest = Contest::new(scenario, seed)?;
     let mut server = GameServer::open(contest, scenario, settings, recorder)?;
     tell(ProgressMessage::Open {

@@ -35,7 +35,7 @@ pub(super) fn play(
             due = clock::now();
         }
         due += period;
-        // At this pace, silence counts from an agent's last message.
+        // In real time, silence is counted from an agent's last message.
         server.lose_silent();
         server.contest.advance();
         server.pacing.played();

@@ -46,7 +46,7 @@ pub(super) struct GameServer<'w> {
     pub(super) contest: Contest,
     /// The scenario before the values of a seed are drawn.
     scenario: &'w Scenario,
-    /// The game to play instead of this one.
+    /// The game that replaces this one after a reset.
     next: Option<Contest>,
     pub(super) pacing: Pacing,
     recorder: Option<&'w mut GameRecorder>,
@@ -57,7 +57,7 @@ pub(super) struct GameServer<'w> {
     inbox: Arc<MessageInbox>,
     bus: Bus,
     pictures: Vec<Publisher>,
-    /// By team, in real time.
+    /// By team; only used in real time.
     throttles: Vec<Throttle>,
     /// Subscriptions to the bytes of boats' links, while they are recorded or observed.
     link_reports: BTreeMap<VehicleId, Declaration>,
@@ -88,7 +88,7 @@ pub(super) struct GameServer<'w> {
     game_info: Vec<u8>,
     stop: Arc<AtomicBool>,
     refusals: Refusals,
-    /// When each vehicle's agent was last heard, in working time.
+    /// When each vehicle's agent was last heard from, in working time.
     heard: Vec<Duration>,
     pub(super) time: WorkingTime,
     pub(super) reporter: Reporter,
@@ -204,7 +204,7 @@ impl<'w> GameServer<'w> {
         })
     }
 
-    /// Replaces the game by the next one, if it was reset. Its agents have to join again.
+    /// If the game was reset, replaces it with the next one. Its agents have to join again.
     pub(super) fn restart(&mut self) -> bool {
         let Some(next) = self.next.take() else {
             return false;
@@ -258,7 +258,7 @@ impl<'w> GameServer<'w> {
         Ok(())
     }
 
-    /// The real boats without a report, or whose gateway has left.
+    /// The real boats that have not reported, or whose gateway has left.
     fn silent_boats(&self) -> impl Iterator<Item = VehicleId> {
         let is_vacant = |vehicle: VehicleId| self.gateways.vacant().any(|vacant| vacant == vehicle);
         let externals = self.contest.scenario().externals();
@@ -310,8 +310,8 @@ impl<'w> GameServer<'w> {
     /// Sends every team its picture of the open decision, and every real boat its order. Sending
     /// them twice is harmless.
     pub(super) fn send_pictures(&mut self) -> Result<(), NodeError> {
-        // Reports of real boats arrive while a decision is open; their age counts back from this
-        // moment.
+        // Reports of real boats arrive while a decision is open; their age is measured back from
+        // this moment.
         self.opened = Some(clock::now());
         // Pictures are sent again until they are answered, but recorded once.
         let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
@@ -367,8 +367,8 @@ impl<'w> GameServer<'w> {
             seq,
             version: ExternalOrder::VERSION,
         };
-        // The time of the answered picture: from it the gateway computes an order's age, however
-        // often the order is repeated.
+        // The gateway computes an order's age from the time of the answered picture, however often
+        // the order is repeated.
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder {
             stamp,
@@ -393,8 +393,8 @@ impl<'w> GameServer<'w> {
 
     /// Drops agents that have been silent for longer than the scenario allows.
     pub(super) fn lose_silent(&mut self) {
-        // In working time, not by the clock: agents must not be blamed for silence while the sim
-        // was suspended.
+        // Measure in working time, not by the clock: agents must not be blamed for silence while
+        // the sim was suspended.
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
             if self.time.worked.saturating_sub(self.heard[i]) > patience {
@@ -561,7 +561,7 @@ impl<'w> GameServer<'w> {
     }
 
     /// Sends a real boat its order between two decisions. If the session has closed, the next
-    /// decision detects it.
+    /// decision returns the error.
     fn pass_on_now(&mut self, vehicle: VehicleId) {
         self.pass_on(vehicle).unwrap_or_default();
     }

@@ -51,7 +51,7 @@ impl std::fmt::Display for Pace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Pace::Lockstep => f.write_str("lockstep"),
-            // In a form that can be parsed: a recording's pace can be passed to a new run.
+            // Use a form that can be parsed: a recording's pace can be passed to a new run.
             Pace::Realtime { factor } if *factor == 1.0 => f.write_str("realtime"),
             Pace::Realtime { factor } => write!(f, "{factor}x"),
         }

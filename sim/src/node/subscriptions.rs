@@ -72,7 +72,7 @@ pub(super) fn subscribe_report(
                 what,
                 message: message.to_vec(),
             }),
-            // Count it with all other refusals, which the result and the page show.
+            // Count the message with all other refusals, which the result and the page show.
             None => others.refuse(Refusal::Garbage),
         }
     })
@@ -108,8 +108,8 @@ pub(super) fn open(
     let others = || Arc::clone(&inboxes.others);
     let gone = others();
     let joins = others();
-    // If the inbox is full, this may be dropped: a busy sim checks for stops before each message
-    // anyway.
+    // If the inbox is full, the notification may be dropped: a busy sim checks for stops before
+    // each message anyway.
     let stops = Arc::clone(&inboxes.controls);
     let look = others();
     let stop = move |bytes: &[u8]| {
@@ -125,8 +125,8 @@ pub(super) fn open(
         }
     };
     let mut declarations = vec![
-        // One subscription for all agents: the key contains the agents' names for access control,
-        // and the ticket identifies the sender.
+        // One subscription serves all agents: the key contains the agents' names for access
+        // control, and the ticket identifies the sender.
         bus.subscribe(
             topic::all_orders(game),
             inboxes.message_callback(|orders, _| Incoming::Orders(orders)),

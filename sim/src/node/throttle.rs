@@ -13,7 +13,7 @@ const QUEUED_MAX: Duration = Duration::from_millis(300);
 const SKIPPED_MAX: u32 = 2;
 /// The minimum covers one to two windows.
 const WINDOW: Duration = Duration::from_secs(10);
-/// Time without a reply after which a team is absent, not slow.
+/// Time without a reply after which a team counts as absent, not slow.
 const ABSENT: Duration = Duration::from_secs(2);
 
 /// The queues between the sim and the agents of a team.

@@ -1,9 +1,9 @@
-//! Working time of a sim, in which it measures the patience with other nodes. It excludes time that
-//! the sim lost because it was suspended or had no processor.
+//! The sim's working time, by which it measures its patience with other nodes. It excludes time
+//! that the sim lost because it was suspended or had no processor.
 
 use std::time::{Duration, Instant};
 
-/// Duration of a cycle of the sim above which it counts as an interruption.
+/// A cycle of the sim that takes longer counts as an interruption.
 const TURN_MAX: Duration = Duration::from_secs(1);
 /// How long lost links have to return after an interruption, during which patience does not count.
 /// zenoh waits at most four seconds between two attempts to connect.
@@ -33,9 +33,9 @@ impl WorkingTime {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;
         if passed.saturating_sub(waited) > TURN_MAX {
-            // Ten seconds more: zenoh drops links after ten seconds of silence, and they must be
-            // reopened. A shorter lease would detect broken links sooner, but also drop suspended
-            // ones.
+            // Allow ten more seconds: zenoh drops links after ten seconds of silence, and they must
+            // be reopened. A shorter lease would detect broken links sooner, but also drop
+            // suspended ones.
             self.recovery = RECOVERY;
             return;
         }

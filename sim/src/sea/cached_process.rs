@@ -24,7 +24,7 @@ impl CachedProcess {
     pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
         let correlation = GaussMarkov::neighbour_correlation();
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
-        // A power of two, so that finding a slot takes a mask rather than a division.
+        // The length is a power of two, so that finding a slot takes a mask rather than a division.
         let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
         CachedProcess {
             process,
@@ -53,8 +53,8 @@ impl CachedProcess {
 
     /// The pair of processes at a place, each with mean 0 and variance 1.
     ///
-    /// Linear interpolation reduces the variance to (1−w)² + w² + 2 w (1−w) ρ. Dividing by its root
-    /// compensates for that.
+    /// Linear interpolation reduces the variance to (1−w)² + w² + 2 w (1−w) ρ. Dividing by its
+    /// square root compensates for that.
     #[inline]
     pub(super) fn at(&self, place: f64) -> Pair {
         let floor = place.floor();
@@ -101,7 +101,7 @@ mod tests {
     fn the_cache_changes_no_bit() {
         let bare = CachedProcess::new(process(), 0.0);
         let mut cached = CachedProcess::new(process(), 40.0);
-        // Ahead by little and by a lot, back, beyond the ring, and below zero.
+        // Small and large steps ahead, steps back, beyond the ring, and below zero.
         for from in [
             0.0, 0.4, 1.7, 30.2, 31.0, 200.5, 5.5, 6.5, -70.2, -1030.0, 1e6,
         ] {

@@ -57,8 +57,8 @@ impl CurrentField {
         }
     }
 
-    /// Caches the values that [`CurrentField::at_time`] needs at `now`. Affects only speed, not a
-    /// single bit of the results.
+    /// Caches the values that [`CurrentField::at_time`] needs at `now`. This only saves time: the
+    /// results have the same bits.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some((wander, process)) = &mut self.wander {
             let place = wander_place(wander, now);
@@ -80,8 +80,8 @@ impl CurrentField {
             let mean_m_s = self.mean_m_s.dot(wander.toward);
             let wandering_m_s =
                 mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
-            // Clipped, not reflected: the process itself continues unbounded and stays a function
-            // of time.
+            // The speed is clipped, not reflected: the process itself continues unbounded and stays
+            // a function of time.
             let speed_m_s = wandering_m_s
                 .max(wander.speed_m_s.0)
                 .min(wander.speed_m_s.1);
@@ -89,7 +89,7 @@ impl CurrentField {
         }
         if let Some(tide) = self.tide {
             let turns = now.as_s() / tide.period_s + tide.phase;
-            // Reduce the argument first, so that a game of many tides keeps its digits.
+            // Reduce the argument first, so that a game of many tides does not lose digits.
             let (sin, _) = math::sin_cos(TAU * (turns - turns.floor()));
             uniform_m_s = uniform_m_s + tide.flood_m_s.scaled(sin);
         }
@@ -113,8 +113,9 @@ impl CurrentNow<'_> {
         self.over_hull(place, Rotation::NORTH).0
     }
 
-    /// The water's velocity (m/s) at the centre of a hull, and the rotation (rad/s clockwise) felt
-    /// by a hull on this heading: the rate at which the flow across the heading grows along it.
+    /// The water's velocity (m/s) at the centre of a hull, and the rotation (rad/s clockwise)
+    /// experienced by a hull on this heading: the rate at which the flow across the heading grows
+    /// along it.
     ///
     /// The hull is assumed short compared with the curvature of the flow: for one of a tenth of an
     /// eddy's core radius, the mean over its length differs by a thousandth.

@@ -44,8 +44,8 @@ impl Vortex {
         let from_centre = place - self.centre;
         let squared = from_centre.dot(from_centre);
         let s = squared * self.per_radius_squared;
-        // The fraction of the circulation inside this radius. `expm1` instead of `1 - exp`: in the
-        // core all digits would cancel.
+        // The fraction of the circulation inside this radius. Use `expm1` instead of `1 - exp`: in
+        // the core all digits would cancel.
         let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
         // The water's angular rate around the centre, rad/s.
         let rate = if s == 0.0 {

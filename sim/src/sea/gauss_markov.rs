@@ -84,12 +84,12 @@ impl Trail {
 
 impl GaussMarkov {
     /// The process `name` of this game. `place` is the farthest grid position read by a given time:
-    /// a seed that ends then applies up to that position.
+    /// a seed that is replaced then applies up to that position.
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
-            // Once per level, so that the only transcendental function in a look-up is the noise's
-            // logarithm.
+            // Computed once per level, so that the only transcendental function in a look-up is the
+            // noise's logarithm.
             let rho = libm::exp(-apart);
             (
                 rho / (1.0 + rho * rho),
@@ -252,7 +252,7 @@ mod tests {
         let in_order: Vec<Pair> = (-2100..2100)
             .map(|index| process.at(index, &mut trail))
             .collect();
-        let stride = 1777; // coprime to 4200: every point once, in a wild order
+        let stride = 1777; // coprime to 4200: every point once, in a scrambled order
         for i in 0..4200 {
             let i = i * stride % 4200;
             assert_eq!(

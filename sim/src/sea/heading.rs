@@ -18,7 +18,7 @@ pub(super) fn of_bin(bin: usize) -> f64 {
 fn place(heading_rad: f64) -> (usize, f64) {
     let bins = heading_rad * (BINS as f64 / TAU);
     let below = bins.floor();
-    // A NaN heading finds bin 0 and yields NaN.
+    // A NaN heading selects bin 0 and yields NaN.
     (
         (below as i64).rem_euclid(BINS as i64) as usize,
         bins - below,

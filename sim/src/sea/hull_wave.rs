@@ -45,14 +45,14 @@ pub struct WaveSample {
 pub struct HullWaves {
     instructions: Instructions,
     blocks: Vec<Block<Row>>,
-    /// For each component: velocity in surge and sway per cosine of the phase and in yaw per sine,
-    /// and an R, which does not depend on the heading.
+    /// For each component: coefficients of the velocity in surge and sway (of the phase's cosine)
+    /// and in yaw (of its sine), and `a R`, which does not depend on the heading.
     lines: HeadingTable,
     /// The mean drift force divided by the sum of c²: surge, sway, and two zeros.
     drift: HeadingTable,
 }
 
-/// Factors on the cosine and on the sine of the phase, of four components, for each of the four
+/// For four components: factors on the cosine and on the sine of the phase, for each of the four
 /// numbers of a line. Over time the phase decreases by ω: (cos)' = ω sin, (sin)' = −ω cos.
 #[derive(Clone, Copy, Debug)]
 struct Row {
@@ -79,7 +79,7 @@ impl HullWaves {
         HullWaves::of(field, boat, water_density_kg_m3, &Patches::new(field, boat))
     }
 
-    /// The same, given averaged waves.
+    /// Like [`HullWaves::new`], from waves that are already averaged.
     pub(super) fn of(
         field: &WaveField,
         boat: &Boat,
@@ -180,8 +180,8 @@ impl HullWaves {
             .zip(lines.as_chunks::<FOLD>().0)
             .enumerate()
         {
-            // At the boat's position, which yields the frequency of encounter. Adding it explicitly
-            // would combine it with a wrong wave number.
+            // Evaluated at the boat's position, which yields the frequency of encounter. Adding
+            // that frequency explicitly would pair it with the wrong wavenumber.
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
             for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
                 let line = line.at_fraction(fraction);
@@ -236,7 +236,8 @@ struct Sums {
     of_sin: Lanes<f32>,
 }
 
-/// [`HullWaves::at`] without using the sums, which would affect their register allocation here.
+/// The part of [`HullWaves::at`] before the sums are used, which would affect register allocation
+/// here.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,
@@ -252,7 +253,7 @@ impl Kernel for At<'_> {
     }
 }
 
-/// The same for [`HullWaves::at_with`].
+/// Like [`At`], for [`HullWaves::at_with`].
 struct AtWith<'a> {
     waves: &'a HullWaves,
     submergence: &'a Submergence,
@@ -279,7 +280,8 @@ pub(super) fn orbital_speed_m_s(wave: &PlaneWave, boat: &Boat) -> f64 {
 }
 
 /// Orbital velocity with this amplitude, averaged over a rectangle of the hull's length and beam:
-/// per cosine of the phase amidships in surge and sway, and per sine in yaw.
+/// the coefficients of the cosine of the phase amidships for surge and sway, and of its sine for
+/// yaw.
 ///
 /// Yaw is the rotation rate of a rigid line along the hull with the same first moment of the
 /// transverse velocity: the mean of x v over the mean of x².

@@ -65,7 +65,7 @@ pub struct SeaModel {
     half_s: f64,
 }
 
-/// A hull size in the waves.
+/// A hull of one size in the waves.
 #[derive(Clone, Debug)]
 struct Shape {
     waves: HullWaves,
@@ -113,15 +113,15 @@ pub struct SeaForcing {
 }
 
 impl SeaModel {
-    /// This sea over this field, for these kinds of boat and ticks of this length, with the
-    /// randomness of `seeds`.
+    /// The model of this sea over this field, for these kinds of boat and ticks of this length,
+    /// with the randomness of `seeds`.
     pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
         let waves = sea
             .waves
             .as_ref()
             .map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
-        // At least half a metre: the wind profile is a power of the height and has no meaning at
-        // the water itself.
+        // Use at least half a metre: the wind profile is a power of the height and is meaningless
+        // at the surface itself.
         let highest = boats
             .iter()
             .map(|boat| boat.windage.height_m)
@@ -164,8 +164,8 @@ impl SeaModel {
         };
         // Boats whose propellers never draw air do not incur this cost.
         thruster.flaws.ventilation?;
-        // By size, not by name: the tables dominate the time to create a game, and boats with
-        // different strategies often have the same hull.
+        // Share tables by size, not by name: they dominate the time to create a game, and boats
+        // with different strategies often have the same hull.
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
@@ -199,7 +199,7 @@ impl SeaModel {
         )
     }
 
-    /// Computes waves with these instructions, which affect only how fast it computes.
+    /// Computes waves with these instructions, which affect only how long that takes.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.waves = self
             .waves
@@ -212,7 +212,7 @@ impl SeaModel {
         }
     }
 
-    /// Caches the values needed at `now`. Affects only speed, not a single bit of the results.
+    /// Caches the values needed at `now`. This only saves time: the results have the same bits.
     pub fn prepare(&mut self, now: SimTime) {
         self.current.prepare(now);
         if let Some(wind) = &mut self.wind {
@@ -229,8 +229,8 @@ impl SeaModel {
     /// The sea at `now`.
     #[inline]
     pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
-        // In whole nanoseconds, so that wave times have the same bits in a played and in a restored
-        // game.
+        // Use whole nanoseconds, so that wave times have the same bits in a played and in a
+        // restored game.
         let middle_s = (now + self.half_tick).as_s();
         SeaNow {
             model: self,
@@ -264,7 +264,8 @@ impl SeaNow<'_> {
             ..SeaForcing::default()
         };
         if let Some(wind) = &self.model.wind {
-            // At the start of the tick: gusts last for seconds, a tick for hundredths.
+            // Evaluate the wind at the start of the tick: gusts last for seconds, a tick for
+            // hundredths of a second.
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(rotation, air_m_s, nu);
             forcing.force = windage::wind_force(&boat.windage, boat.length_m, past);
@@ -289,8 +290,8 @@ impl SeaNow<'_> {
         let half_s = self.model.half_s;
         let shape = &self.model.shapes[boat.shape].1;
         let velocity_m_s = nu.in_ned(rotation);
-        // Once, in the middle of the tick: the rate of change is also known there, and three
-        // evaluations would triple the largest cost of a tick.
+        // Evaluate the waves once, in the middle of the tick: the rate of change is also known
+        // there, and three evaluations would triple the largest cost of a tick.
         let middle = Pose {
             at: pose.at + velocity_m_s.scaled(half_s),
             psi_rad: pose.psi_rad + half_s * nu.yaw,

@@ -16,8 +16,8 @@ pub(super) struct Patch {
     /// Averaging factors over the length and over the beam.
     pub(super) mean_x: f64,
     pub(super) mean_y: f64,
-    /// The slope of the best-fitting straight line over the length and over the beam, per −sine of
-    /// the phase, 1/m.
+    /// The slope of the best-fitting straight line over the length and over the beam, as a factor
+    /// on minus the sine of the phase, 1/m.
     pub(super) tilt_x: f64,
     pub(super) tilt_y: f64,
 }
@@ -55,7 +55,7 @@ impl Patch {
 /// slope of the line that best fits sin, 3 (sin u − u cos u) / u³.
 fn fit(half_rad: f64) -> (f64, f64) {
     let u = half_rad;
-    // A series near zero, where the quotient loses its digits.
+    // Use a series near zero, where the quotient loses its digits.
     if u.abs() < 1e-4 {
         return (1.0 - u * u / 6.0, 1.0 - u * u / 10.0);
     }
@@ -84,8 +84,8 @@ impl Patches {
                 .map(move |wave| Patch::new(wave, boat, heading::of_bin(bin)))
         };
         let mut patches: Vec<Patch> = (0..BINS / 2).flat_map(of_bin).collect();
-        // After half a turn, the same wave comes from the other end, which saves half of the sines
-        // at the start of a game.
+        // On the opposite heading, the same wave comes from the other end: this saves half of the
+        // sines at the start of a game.
         patches.extend_from_within(..);
         let half = patches.len() / 2;
         patches[half..]

@@ -1,8 +1,8 @@
 //! Sine and cosine of sixteen angles at once, bit-identical on every machine.
 //!
-//! The sea needs thousands of them per tick. They use only sums, products and differences, each
-//! rounded by IEEE 754 and none fused. Neither the processor nor the platform's C library therefore
-//! affects the result.
+//! The sea needs thousands of both per tick. The code here uses only sums, products and
+//! differences, each rounded as IEEE 754 requires and none fused. Neither the processor nor the
+//! platform's C library therefore affects the result.
 //!
 //! The angle is reduced to half a turn in double precision. Sine, cosine and the sums over waves
 //! are in single precision, with twice as many numbers per instruction. A wave is then accurate to
@@ -41,12 +41,12 @@ pub(super) const ERROR: f64 = 1.2e-6;
 /// Sine and cosine of angles in turns (1 is a full turn). Accurate to 1.2e-6 up to ±2^51 turns.
 ///
 /// In turns the reduction is an exact subtraction, however large the angle. The polynomials take
-/// half the angle, within ± a quarter turn, so quadrants need no case distinction.
+/// half the angle, within ± a quarter turn, so the quadrants need no special cases.
 #[inline(always)]
 pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
     let rounder = Lanes::<f64>::splat(ROUNDER);
-    // In double precision, so that a phase is as accurate after a day as at the start. The rest is
-    // in single precision, which takes half the time.
+    // Reduce in double precision, so that a phase is as accurate after a day as at the start. The
+    // rest is in single precision, which takes half the time.
     let r = (turns - ((turns + rounder) - rounder)).single();
     let x = r * r;
     let sin_half = quartic(SIN, x) * r;

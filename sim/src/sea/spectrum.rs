@@ -60,7 +60,7 @@ impl Jonswap {
     }
 }
 
-/// The same as a density over frequency, m²/Hz, at `frequency_hz` > 0.
+/// Spectral density of the surface elevation over frequency, m²/Hz, at `frequency_hz` > 0.
 pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
     TAU * jonswap_m2_s(waves, TAU * frequency_hz)
 }
@@ -94,7 +94,7 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             .zip(&densities)
             .map(|(x, density)| x * x * density),
     );
-    // With energy alone, only a handful of strata would represent the short waves, which cause the
+    // With strata of equal energy, only a handful would represent the short waves, which cause the
     // slopes.
     let both = Curve {
         x: energy.x,
@@ -119,8 +119,8 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
             let share = above - below;
             let x = energy.at(below + stream.unit() * share);
             below = above;
-            // One direction per frequency, because several at one frequency lock into a standing
-            // pattern.
+            // Use one direction per frequency, because several at one frequency lock into a
+            // standing pattern.
             let quantile = first_quantile + i as f64 * GOLDEN;
             Component {
                 amplitude_m: (2.0 * variance_m2 * share).sqrt(),

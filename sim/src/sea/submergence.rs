@@ -11,7 +11,8 @@ use scenario::boat::Boat;
 /// Change of submergence of the two propellers of a kind of boat in a wave field.
 #[derive(Clone, Debug)]
 pub struct Submergence {
-    /// Port and starboard per cosine of the phase amidships, then both per sine, m.
+    /// Coefficients of the cosine of the phase amidships for port and starboard, then of its sine,
+    /// m.
     change: HeadingTable,
 }
 
@@ -21,7 +22,7 @@ impl Submergence {
         Submergence::of(field, boat, places, &Patches::new(field, boat))
     }
 
-    /// The same, given averaged waves.
+    /// Like [`Submergence::new`], from waves that are already averaged.
     pub(super) fn of(
         field: &WaveField,
         boat: &Boat,
@@ -67,7 +68,8 @@ impl Submergence {
     }
 }
 
-/// Adds the changes by a row's waves from its numbers, sines and cosines: port, then starboard.
+/// Adds the changes by a row's waves from its coefficients, sines and cosines: port, then
+/// starboard.
 #[inline(always)]
 pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, cos: Lanes<f32>) {
     const HALF: usize = LANES / 2;
@@ -107,8 +109,8 @@ impl Wave {
         self.wavenumber_rad_m * (patch.ahead * place.ahead + patch.starboard * place.starboard)
     }
 
-    /// The wave's contribution to the submergence of a place, per cosine and per sine of its phase
-    /// amidships, given sine and cosine of [`Wave::further_rad`].
+    /// The wave's contribution to the submergence of a place, as coefficients of the cosine and
+    /// sine of its phase amidships, given sine and cosine of [`Wave::further_rad`].
     fn change_at(&self, place: Body, patch: &Patch, (sin, cos): (f64, f64)) -> (f64, f64) {
         let [heave, roll, pitch] = quasi_static(self.pressed_m, patch);
         let bow_up = pitch * place.ahead;

@@ -89,7 +89,7 @@ fn wave_summary(
     boat: &Boat,
     density_kg_m3: f64,
 ) -> WaveSummary {
-    // From ahead and from abeam, the extremes for a hull that is longer than wide.
+    // Waves from ahead and from abeam are the extremes for a hull that is longer than wide.
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
         let velocities = field.waves.iter().map(|wave| {
@@ -181,8 +181,8 @@ mod tests {
         let game =
             scenario::load(&root.join("games/attack_1v1.toml")).unwrap_or_else(|e| panic!("{e}"));
         let mut sea = Sea::at_rest();
-        // 0.128 m/s in 5 m/s and 0.340 m/s in 10 m/s of wind at the boat; the estimate assumed
-        // slightly more windage.
+        // Estimated drift: 0.128 m/s in 5 m/s and 0.340 m/s in 10 m/s of wind at the boat; the
+        // estimate assumed slightly more windage.
         for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {
             sea.wind = Some(Wind {
                 speed_10m_m_s: wind_m_s,

@@ -77,7 +77,7 @@ impl PlaneWave {
     /// shallow water.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
-        // Beyond this the quotient is 0 to the last bit, and slightly beyond, the hyperbolic sine
+        // Beyond this the quotient is 0 to the last bit, and further on the hyperbolic sine
         // overflows.
         if twice > 40.0 {
             1.0
@@ -91,7 +91,8 @@ impl PlaneWave {
         let k = self.wavenumber_rad_m;
         let draught_m = draught_m.min(self.depth_m);
         let bottom = libm::exp(-2.0 * self.depth_rad());
-        // sinh 2kh − sinh 2k(h − T), over sinh² k h and e^(2kh) / 2 each.
+        // Numerator: sinh 2kh − sinh 2k(h − T). The code divides it and sinh² k h by e^(2kh) / 2
+        // each.
         let at_keel = libm::exp(-2.0 * k * draught_m);
         let layer = (1.0 - at_keel) * (1.0 + bottom * bottom / at_keel);
         let a = self.component.amplitude_m;
@@ -115,8 +116,8 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
         // tanh is 1 to the last bit.
         return deep;
     }
-    // Eckart (1952), within 5 %, then four or five steps of Newton's method. In finite depth the
-    // dispersion relation has no closed solution.
+    // Start from Eckart (1952), within 5 %, then take four or five steps of Newton's method. In
+    // finite depth the dispersion relation has no closed solution.
     let mut k = deep / libm::tanh(deep * depth_m).sqrt();
     for _ in 0..20 {
         let tanh = libm::tanh(k * depth_m);
@@ -245,9 +246,9 @@ impl SurfaceRow {
 /// The surface at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// Height above the still water, m, up.
+    /// Height above still water, m.
     pub elevation_m: f64,
-    /// Its gradient: rise per metre to the north and to the east.
+    /// Gradient of the elevation: rise per metre to the north and to the east.
     pub slope: Ned,
 }
 
@@ -273,8 +274,8 @@ impl WaveField {
 
     /// The field of these components: a regular wave, or a sea measured elsewhere.
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
-        // Infinite rather than merely large: every formula above has a limit there and needs no
-        // special case.
+        // Use an infinite depth rather than a merely large one: every formula above has a limit
+        // there and needs no special case.
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components
             .iter()
@@ -289,8 +290,8 @@ impl WaveField {
         }
     }
 
-    /// The same field, computed with these instructions, as is everything built from it. The choice
-    /// affects only how fast it is computed.
+    /// The same field; it and everything built from it use these instructions. The choice affects
+    /// only how long the computation takes.
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField {
             instructions,
@@ -420,7 +421,8 @@ impl WaveField {
             .collect()
     }
 
-    /// The same force from each wave's reflected part and its travel ahead and to starboard.
+    /// Like [`WaveField::mean_drift_newton`], given each wave's reflected part and its direction of
+    /// travel in body axes.
     pub(super) fn drift_of(
         &self,
         boat: &Boat,
@@ -441,7 +443,8 @@ impl WaveField {
         }
     }
 
-    /// The variance of a quantity that is `per_m` of amplitude, given the square of `per_m`.
+    /// The variance of a quantity with the amplitude `per_m` for each metre of wave amplitude,
+    /// given the square of `per_m`.
     fn mean(&self, per_m_squared: impl Fn(&PlaneWave) -> f64) -> f64 {
         self.waves
             .iter()

@@ -46,8 +46,8 @@ pub struct Attitude {
 pub struct WaveResponse {
     instructions: Instructions,
     blocks: Vec<Block<Row>>,
-    /// Heave per cosine, and roll and pitch per sine of the phase, before the springs respond; and
-    /// zero.
+    /// Coefficients before the springs respond: heave (of the phase's cosine), roll and pitch (of
+    /// its sine), and zero.
     quasi_static: HeadingTable,
 }
 
@@ -124,7 +124,7 @@ impl WaveResponse {
         WaveResponse::of(field, boat, &Patches::new(field, boat))
     }
 
-    /// The same, given averaged waves.
+    /// Like [`WaveResponse::new`], from waves that are already averaged.
     pub(super) fn of(field: &WaveField, boat: &Boat, patches: &Patches) -> WaveResponse {
         // Waves that are short compared with the draught have little effect: the hull follows the
         // pressure at its keel, not the surface.
@@ -133,7 +133,7 @@ impl WaveResponse {
             .iter()
             .map(|wave| pressed_m(wave, boat))
             .collect();
-        // Tabulated by heading: averaging each wave over the hull is most of the work and changes
+        // Tabulate by heading: averaging each wave over the hull is most of the work and changes
         // little between ticks.
         let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else {
@@ -186,7 +186,8 @@ struct Sums {
     heave_acceleration: Lanes<f32>,
 }
 
-/// [`WaveResponse::at`] without using the sums, which would affect their register allocation here.
+/// The part of [`WaveResponse::at`] before the sums are used, which would affect register
+/// allocation here.
 struct At<'a> {
     response: &'a WaveResponse,
     pose: Pose,
@@ -232,9 +233,9 @@ pub(super) fn pressed_m(wave: &PlaneWave, boat: &Boat) -> f64 {
     wave.component.amplitude_m * wave.pressure_at(boat.draught_m)
 }
 
-/// Heave, roll and pitch of the plane that best fits a pressure of this amplitude: heave per
-/// cosine, roll and pitch per sine of the phase amidships. A surface rising ahead lifts the bow;
-/// one rising to starboard lifts that side.
+/// Heave, roll and pitch of the plane that best fits a pressure of this amplitude: heave as a
+/// factor on the cosine of the phase amidships, roll and pitch on its sine. A surface rising ahead
+/// lifts the bow; one rising to starboard lifts that side.
 pub(super) fn quasi_static(pressed_m: f64, patch: &Patch) -> [f64; 3] {
     let a = pressed_m;
     [

@@ -63,8 +63,8 @@ impl WindField {
             profile_exponent: wind.profile_exponent,
             gusts: None,
         };
-        // At the highest boat: the pattern needs a single speed, or boats would disagree about the
-        // time of a gust.
+        // Use the mean wind at the highest boat: the pattern needs a single speed, or boats would
+        // disagree about the time of a gust.
         let carry_m_s = made.mean_m_s(reference_height_m).max(CARRY_MIN_M_S);
         let along_m = field.corners.map(|corner| corner.dot(downwind));
         let reach_m = (
@@ -102,7 +102,7 @@ impl WindField {
         self.speed_10m_m_s * libm::pow(height_m / 10.0, self.profile_exponent)
     }
 
-    /// Caches the gusts over the field at `now`. Affects only speed: [`WindField::at`] gives the
+    /// Caches the gusts over the field at `now`. This only saves time: [`WindField::at`] gives the
     /// same bits without it.
     pub fn prepare(&mut self, now: SimTime) {
         if let Some(gusts) = &mut self.gusts {
@@ -120,7 +120,7 @@ impl WindField {
         let Some(gusts) = &self.gusts else {
             return self.downwind.scaled(mean_m_s);
         };
-        // Two processes, along and across: gusts also change the wind direction.
+        // Use two processes, along and across: gusts also change the wind direction.
         let (along, across) = gusts.process.at(gusts.place(place.dot(self.downwind), now));
         self.downwind
             .scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))

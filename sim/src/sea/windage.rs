@@ -37,13 +37,13 @@ pub fn wind_force(windage: &Windage, length_m: f64, past: Body) -> Planar {
         starboard: s,
     } = past;
     let half_rho = 0.5 * AIR_DENSITY_KG_M3;
-    // Relative to the boat, and in its axes. VRX applies the wind component by component in world
-    // axes, which makes the force depend on the compass heading.
+    // Compute the force relative to the boat, in its axes. VRX applies the wind component by
+    // component in world axes, which makes the force depend on the compass heading.
     let speed_m_s = (a * a + s * s).sqrt();
     Planar {
         surge: half_rho * windage.surge_coefficient * windage.frontal_area_m2 * speed_m_s * a,
         sway: half_rho * windage.sway_coefficient * windage.lateral_area_m2 * speed_m_s * s,
-        // Subtracted from zero, so that calm air gives +0 as elsewhere.
+        // Subtract from zero, so that calm air gives +0 as elsewhere.
         yaw: 0.0
             - half_rho
                 * windage.yaw_coefficient

@@ -4,10 +4,10 @@
 //! reading = ψ − declination − (A + B sin ψ + C cos ψ + D sin 2ψ + E cos 2ψ) + thrust error + noise
 //! ```
 //!
-//! Declination and deviation have navigators' sign convention: with east positive, the needle
+//! Declination and deviation follow the navigators' sign convention: with east positive, the needle
 //! points east of its true direction and the compass reads too low (Bowditch, The American
-//! Practical Navigator, ch. on compasses). The thrust error is that of the reading at full thrust
-//! of both thrusters.
+//! Practical Navigator, ch. on compasses). The thrust error is proportional to the thrusters'
+//! current; its setting applies at full thrust of both thrusters.
 
 use super::truth::{Truth, whole_ticks};
 use primitives::angle::wrap_pi;
@@ -73,7 +73,7 @@ impl CompassModel {
             .reduce(|sum, one| sum + one)
     }
 
-    /// The reading at `now`, which is that of the last period; rad, -pi to pi.
+    /// The reading at `now`, rad, -pi to pi; it changes once per period.
     pub fn read(&self, state: &mut CompassState, truth: &Truth, now: SimTime) -> f64 {
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
@@ -87,8 +87,8 @@ impl CompassModel {
             if let Some(off_rad) = self.fault_rad(now) {
                 state.psi_rad = wrap_pi(state.psi_rad + off_rad);
             }
-            // Like a real front seat, it steers by its compass, so a deviation leads the boat
-            // astray instead of only being reported.
+            // Like a real front seat, the simulated one steers by its compass, so a deviation leads
+            // the boat astray instead of only being reported.
             state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }
         state.psi_rad

@@ -202,7 +202,7 @@ pub(crate) fn energy_joule(world: &World, hulls: &[HullModel]) -> f64 {
         .sum()
 }
 
-/// A boat's hull: the ends of its keel, and the radius around it in m.
+/// A boat's hull as a capsule: the ends of its axis, and its radius in m.
 pub(crate) fn capsule(world: &World, scenario: &Scenario, vehicle: usize) -> ((Ned, Ned), f64) {
     let kind = &scenario.boats[scenario.vehicles[vehicle].boat];
     let pose = world.state().boats[vehicle].pose;
@@ -356,7 +356,7 @@ pub(crate) fn amplitudes(series: &[f64]) -> Vec<f64> {
     (0..count / 2).map(amplitude).collect()
 }
 
-/// The derivatives at 0 of some parts of `f`, by fourth-order differences. The step suits
+/// The derivatives at 0 of the components of `f`, by fourth-order differences. The step suits
 /// single-precision numbers that vary over a tenth of a unit.
 pub(crate) fn derivative<T, const N: usize>(
     f: impl Fn(f64) -> T,

@@ -1,5 +1,5 @@
-//! The games behind a report. If there is no recording of a game, it is played into a temporary one
-//! when a page requests it.
+//! The games behind a report. A game without a recording is played when a page requests it, and
+//! recorded temporarily.
 
 use crate::in_process;
 use crate::network::replay_command;
@@ -56,7 +56,7 @@ pub(super) struct Games {
 struct Open {
     name: String,
     showing: Arc<Showing>,
-    /// Its recording.
+    /// The game's recording.
     file: PathBuf,
 }
 

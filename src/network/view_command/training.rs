@@ -113,7 +113,7 @@ impl TrainingReport {
 }
 
 impl Run {
-    /// The run in a folder, which is called `shown` in commands.
+    /// The run in a folder, which printed commands call `shown`.
     fn of(folder: PathBuf, shown: &Path) -> Run {
         let name = folder
             .file_name()
@@ -143,8 +143,8 @@ impl Run {
         }
     }
 
-    /// Its plan from `run.json`, with the command that plays its best policy; null for runs of
-    /// earlier versions.
+    /// The run's plan from `run.json`, with the command that plays its best policy; null for runs
+    /// of earlier versions.
     fn plan(&self) -> Value {
         let read = || serde_json::from_slice(&read(&self.folder.join("run.json")).ok()?).ok();
         let mut plan: Value = read().unwrap_or_default();

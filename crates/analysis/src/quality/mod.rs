@@ -165,8 +165,8 @@ impl GameQuality {
         }
     }
 
-    /// Adds the next step. `minds` are the states in which the vehicles' minds gave the orders for
-    /// it, if known.
+    /// Adds the next step. `minds` are the states of the vehicles' minds when they gave the orders
+    /// for this step, if known.
     pub fn add(&mut self, step: &Step, minds: &[Option<MindState>]) {
         self.encounters.add(step, &mut self.quality);
         // A step covers the time since the previous one. The first covers none, because no order

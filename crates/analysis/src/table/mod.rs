@@ -35,7 +35,7 @@ pub const EVENTS: &str = "events";
 /// Receives rows, starting with the column names.
 pub type Sink<'a> = dyn FnMut(&[String]) -> std::io::Result<()> + 'a;
 
-/// Why a table cannot be made.
+/// Why a table cannot be written.
 #[derive(Debug, Error)]
 pub enum TableError {
     /// The recording has no such topic.
@@ -85,8 +85,8 @@ pub fn check(bag: &Bag, topic: &str) -> Result<(), TableError> {
     }
 }
 
-/// Writes the table of a topic row by row and returns the damaged messages. `scenario` is that of
-/// the game, for the recording of a game.
+/// Writes the table of a topic row by row and returns the damaged messages. For the recording of a
+/// game, `scenario` is the game's.
 ///
 /// # Errors
 /// [`TableError`] if the topic does not exist or is damaged, or a row cannot be written.

@@ -100,7 +100,7 @@ fn a_snapshot_from_either_side_of_another_seed_goes_on_as_the_game_did() {
             snapshots.push(contest.snapshot());
             contest.advance();
         }
-        // Restores snapshots from the end backwards, without playing the parts between.
+        // Restores snapshots from the end backwards, without playing the parts in between.
         for snapshot in snapshots.iter().rev().step_by(45) {
             let mut other = begin();
             other

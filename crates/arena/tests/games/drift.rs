@@ -146,8 +146,8 @@ fn a_helm_sees_the_current_that_there_is() {
 fn a_boat_outside_comes_back_against_a_wind_that_drifts_it_faster_than_its_recovery_speed() {
     let strategy = "base = \"SCENARIOS/strategies/safety.toml\"\nabout = \"comes back\"\n\
         [behaviour.stay_in]\nrecovery_speed_m_s = 0.5\n";
-    // At the lee edge of open water: a gale from the south-east over a bay drifts a free boat by
-    // 0.75 m/s.
+    // At the lee edge of open water: a gale from the south-east over a bay makes a free boat drift
+    // at 0.75 m/s.
     let boat = "base = \"SCENARIOS/boats/surveyor_m1_8.toml\"\n";
     let mut scenario = scenario(
         boat,

@@ -12,8 +12,8 @@ pub(crate) fn shipped(path: &str) -> PathBuf {
         .join(path)
 }
 
-/// The scenario of `game.toml` among these files, in which `SCENARIOS` stands for the folder of the
-/// shipped ones.
+/// The scenario of `game.toml` among these files, in which `SCENARIOS` is replaced with the folder
+/// of the shipped files.
 pub(crate) fn loaded(files: &[(&str, impl AsRef<str>)]) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     for (name, text) in files {

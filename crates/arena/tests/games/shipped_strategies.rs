@@ -139,7 +139,7 @@ fn strategy_5_beats_strategy_4_from_either_side() {
             lost += u64::from(points(&outcome, own) < points(&outcome, other));
         }
     }
-    // Over hundreds of games it wins about three quarters of those decided.
+    // Over hundreds of games it wins about three quarters of the decided ones.
     assert!(won > lost && 2 * won > SEEDS, "{won} won, {lost} lost");
 }
 

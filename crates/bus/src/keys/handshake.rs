@@ -86,7 +86,7 @@ fn client(host: &str, keys: &Bundle) -> Result<ClientConnection, String> {
     roots.add_parsable_certificates(authority);
     let name = ServerName::try_from(host.to_owned()).map_err(|e| format!("{host:?}: {e}"))?;
     let config = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()))
-        // Like zenoh's own links, which accept no older version (`zenoh-link-tls` 1.10.2): with
+        // Use the oldest version that zenoh's own links accept (`zenoh-link-tls` 1.10.2): with
         // other versions the handshake could fail or succeed for different reasons.
         .with_protocol_versions(&[&TLS13])
         .and_then(|builder| {

@@ -65,9 +65,9 @@ pub fn make(
     // Each set has an authority with its own name, so that keys of different sets can be
     // distinguished.
     let mut authority = params(format!("Squall {:016x}", crate::random_number()), &[])?;
-    // No authorities below this one: its key is discarded when this function returns, and no other
-    // may sign in its name. Revoking a single certificate would need a list that reaches every
-    // boat, so sets are replaced as a whole.
+    // Allow no authorities below this one: its key is discarded when this function returns, and no
+    // other may sign in its name. Revoking a single certificate would need a list that reaches
+    // every boat, so sets are replaced as a whole.
     authority.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     authority.key_usages = vec![KeyUsagePurpose::KeyCertSign];
     let authority_key = KeyPair::generate()?;
@@ -84,7 +84,8 @@ pub fn make(
         let mut certificate = params(identity.to_string(), hosts)?;
         certificate.key_usages = vec![KeyUsagePurpose::DigitalSignature];
         certificate.extended_key_usages = vec![usage];
-        // Strict verifiers, such as `openssl verify -x509_strict`, reject a certificate without it.
+        // Strict verifiers, such as `openssl verify -x509_strict`, reject a certificate without an
+        // authority key identifier.
         certificate.use_authority_key_identifier_extension = true;
         let key = KeyPair::generate()?;
         let certificate = certificate.signed_by(&key, &issuer)?.pem();
@@ -98,7 +99,8 @@ pub fn make(
     Ok(folders)
 }
 
-/// Creates a folder readable only by its owner, and its parents; fails if it exists.
+/// Creates a folder that only its owner can read, and its parent folders; fails if the folder
+/// exists.
 fn make_folder(path: &Path) -> Result<(), MakeError> {
     let failed = |source| MakeError::Write {
         path: path.to_owned(),

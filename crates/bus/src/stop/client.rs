@@ -28,7 +28,7 @@ const GATEWAYS_MAX: usize = 256;
 /// Stops boats. When dropped, it closes its own paths.
 pub struct StopClient(Arc<Shared>);
 
-/// The state shared by its threads.
+/// The state shared by the client's threads.
 struct Shared {
     orders: Watched<StopOrders>,
     game: Mutex<Option<Arc<StopTopics>>>,
@@ -230,7 +230,7 @@ impl Shared {
                     .lock()
                     .as_ref()
                     .and_then(|game| game.bus.token.clone());
-                // The next status names it again.
+                // The next status names the port again.
                 drop(self.add_gateway(at, Some(&vehicle), token));
             }
             // The answer to a stop includes the boat's state.
@@ -380,7 +380,7 @@ impl Shared {
         });
         if let Err(e) = asked {
             self.orders.visit(|orders| {
-                orders.sim_answered(clock::now(), stop, Err(format!("no thread: {e}")))
+                orders.sim_answered(clock::now(), stop, Err(format!("cannot start thread: {e}")))
             });
         }
     }

@@ -1,7 +1,7 @@
 //! Stop datagrams: a request as at a control port, and its answer.
 //!
-//! A request is JSON, padded with spaces. Its answer repeats session and number, which an outsider
-//! cannot guess. It is never longer than the request, so the port cannot amplify a flood.
+//! A request is JSON, padded with spaces. Its answer repeats its session and number, which an
+//! outsider cannot guess. It is never longer than the request, so the port cannot amplify a flood.
 
 use crate::token::{Proof, Token};
 use messages::external::GatewayCommand;
@@ -69,8 +69,8 @@ impl StopRequest {
             return None;
         }
         let request: StopRequest = serde_json::from_slice(bytes).ok()?;
-        // A datagram has no challenge, so a recorded one could be replayed. Accept it only for
-        // commands that any node may repeat.
+        // A datagram has no challenge, so a recorded one could be replayed. Accept datagrams only
+        // for commands that any node may repeat.
         (!request.command.needs_token()).then_some(request)
     }
 
@@ -188,7 +188,7 @@ mod tests {
         ] {
             assert_eq!(StopRequest::decode(&request(command).encode()), None);
         }
-        // In the format of a line at a control port.
+        // A request in the format of a line at a control port.
         let line = StopRequest::decode(br#"{"body":{"fleet":"e_stop"}}"#).expect("a request");
         assert_eq!(
             (line.game, line.command),

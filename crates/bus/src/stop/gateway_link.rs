@@ -128,7 +128,7 @@ impl DatagramPath {
         let surplus = sent.awaited.len().saturating_sub(AWAITED_MAX);
         sent.awaited.drain(..surplus);
         drop(sent);
-        // It is repeated, and sent on other paths.
+        // Errors are ignored: the request is repeated, and sent on other paths.
         drop(self.socket.send(&bytes));
     }
 }
@@ -261,7 +261,7 @@ impl Connection {
                         asked,
                     ));
                 }
-                // A different boat's gateway, or a gateway that does not run yet.
+                // A different boat's gateway, or a gateway that is not running yet.
                 Ok(_) => {}
                 Err(_) => return Ok(()),
             }

@@ -75,7 +75,7 @@ impl HubStopPort {
             if bound.is_empty() {
                 let missed = missed.into_iter().find_map(Result::err);
                 return Err(failed(
-                    missed.unwrap_or_else(|| std::io::Error::other("it has no address")),
+                    missed.unwrap_or_else(|| std::io::Error::other("host has no address")),
                 ));
             }
             for socket in bound.into_iter().flatten() {
@@ -113,7 +113,7 @@ impl Server {
                 .for_each(|json| drop(publisher.send_json(json)));
         };
         match &request.command {
-            // This session also receives it.
+            // This session also receives the E-stop.
             GatewayCommand::Fleet(FleetCommand::EStop) => {
                 publish(control, serde_json::to_vec(&Control::EStop))
             }

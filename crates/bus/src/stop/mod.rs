@@ -40,7 +40,8 @@ impl StopTopics {
         boats: &[String],
         take: impl Fn(GatewayStatus) + Clone + Send + Sync + 'static,
     ) -> Result<StopTopics, BusError> {
-        // Before all other messages, and not waiting for a lost packet, because stops are repeated.
+        // Sent before all other messages, and without waiting for lost packets, because stops are
+        // repeated.
         let publisher = |key| bus.publisher_with(key, Priority::Urgent, Delivery::Newest);
         let mut stops = BTreeMap::new();
         let mut statuses = Vec::new();

@@ -17,16 +17,16 @@ const AGAIN: Duration = Duration::from_millis(200);
 /// status shows it, and a status is ignored unless the boat was previously known to be in a
 /// different state.
 const DOUBTED: Duration = Duration::from_secs(1);
-/// Maximum lag that a gateway's clock may gain from one status to the next.
+/// Maximum time by which a gateway's clock may fall behind from one status to the next.
 const DRIFT: Duration = Duration::from_micros(100);
-/// Apparent shift of a gateway's start time above which it was restarted.
+/// Apparent shift of a gateway's start time above which the gateway must have been restarted.
 const RESTARTED: Duration = Duration::from_secs(10);
 /// Time during which a stop of all boats goes to all; then it goes only to boats that do not show
 /// it.
 const TO_EVERYBODY: Duration = Duration::from_secs(2);
 /// Time after which a boat that does not show a stop is reported as late.
 const LATE: Duration = Duration::from_secs(2);
-/// Time without hearing from a boat after which it is silent.
+/// Time without hearing from a boat after which it counts as silent.
 const SILENCE: Duration = Duration::from_secs(3);
 /// Time without hearing directly from a boat after which the sim's copies count.
 const RELAYED_AFTER: Duration = Duration::from_secs(1);
@@ -129,7 +129,7 @@ pub(super) struct Saying {
     /// Whether the stop is for all boats and still sent to all.
     pub(super) is_of_fleet: bool,
     pub(super) to_everybody: bool,
-    /// The boats that do not show the stop with certainty.
+    /// The boats that do not certainly show the stop yet.
     pub(super) boats: Vec<String>,
 }
 
@@ -180,8 +180,8 @@ impl StopOrders {
         self.boats.iter()
     }
 
-    /// Whether every stop is certainly done; a stop of all boats is not before a game has named its
-    /// boats.
+    /// Whether every stop is certainly done; a stop of all boats is not certain before a game has
+    /// named its boats.
     pub fn is_done(&self, now: Instant) -> bool {
         let is_for_all = self.stops.iter().any(|stop| stop.target.is_none());
         let is_sure = |stop: &Stop| {
@@ -380,7 +380,7 @@ impl StopOrders {
                 Some(was_sure) if stop.command.is_shown_by(state) => {
                     stop.shown.insert(vehicle.to_owned(), was_sure || is_sure);
                 }
-                // The report that showed it was older than the stop.
+                // The earlier report, which showed the stop, was older than the stop.
                 Some(false) if !stop.is_cancelled && now < stop.asked + DOUBTED => {
                     stop.shown.remove(vehicle);
                 }

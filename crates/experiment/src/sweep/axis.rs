@@ -19,7 +19,7 @@ pub struct Axis {
     /// Levels: numbers, strings or files, all of one type.
     #[schemars(length(max = 1000))]
     pub values: Vec<AxisValue>,
-    /// From and to; uniform in a sampled design.
+    /// Lower and upper limit; uniform in a sampled design.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub range: Option<[f64; 2]>,
     /// Whether the levels of a range are spaced logarithmically.
@@ -165,13 +165,13 @@ impl Axis {
         (0..count).map(|i| self.at(share(i))).collect()
     }
 
-    /// The values to check instead of all: every listed value, or both ends and the second level of
-    /// a range or distribution.
+    /// The values to check in place of all values: every listed one, or both ends and the second
+    /// level of a range or distribution.
     pub(super) fn telling_values(&self) -> Vec<AxisValue> {
         let mut values = self.levels();
         if self.values.is_empty() {
-            // A key allows an interval, in some cases only of integers: the second level shows
-            // whether the steps are integers.
+            // A key allows an interval, in some cases only the integers in it: the second level
+            // shows whether the steps are integers.
             values = vec![self.at(0.0), values.swap_remove(1), self.at(1.0)];
         }
         values

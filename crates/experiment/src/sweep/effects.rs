@@ -37,7 +37,7 @@ pub struct Effect {
 pub struct Level {
     /// The label shown to people.
     pub label: String,
-    /// For numbers, the mean value of the points.
+    /// For numeric axes, the mean value of the points.
     pub value: Option<f64>,
     /// The number of points.
     pub points: usize,
@@ -75,7 +75,7 @@ struct Group {
 
 /// The minimum number of points in a group of a sampled axis.
 const GROUP_POINTS_MIN: usize = 4;
-/// The maximum number of such groups.
+/// The maximum number of groups of a sampled axis.
 const GROUPS_MAX: usize = 8;
 
 impl Observations {

@@ -95,8 +95,7 @@ impl ScenarioFile for Sweep {
         let Err(Problems(mut problems)) = checked else {
             return Ok(());
         };
-        // Each value is read as its own setting, so the same problem has a line that exists in no
-        // file.
+        // Each value is read as a separate setting, so a problem's source line is not in the file.
         for problem in problems.iter_mut().filter(|one| one.path == self.path) {
             problem.source.clear();
         }

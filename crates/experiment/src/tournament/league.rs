@@ -1,7 +1,7 @@
 //! The results of a league: games played before are not repeated when new entries join.
 //!
-//! Results are one JSON line per game, to which lines are only appended. A game is identified by
-//! its parsed files and its seed: changing a strategy yields new games, renaming it does not.
+//! The file has one JSON line per game and is append-only. A game is identified by its parsed files
+//! and its seed: changing a strategy yields new games, renaming it does not.
 
 use super::plan::Plan;
 use super::play::Record;

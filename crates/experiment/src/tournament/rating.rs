@@ -56,8 +56,8 @@ pub fn ratings(entries: usize, rounds: &[Vec<Meeting>]) -> Vec<Rating> {
     let mut strengths = DVector::zeros(entries);
     let mut curvature = DMatrix::identity(entries, entries);
     // All games are available at once. Ratings that change game by game (Elo's own rule, Glicko,
-    // TrueSkill, Weng-Lin) would only add a dependence on the order of games, and a rate of change
-    // although the players do not change.
+    // TrueSkill, Weng-Lin) would only add a dependence on the order of games, and a learning rate
+    // for players that do not change.
     for _ in 0..STEPS_MAX {
         let slope = slope_of(&all, &strengths) + prior_slope(&strengths);
         curvature = curvature_of(&all, &strengths);
@@ -145,9 +145,9 @@ fn errors(
         let slope = slope_of(round, strengths);
         spread += &slope * slope.transpose();
     }
-    // The wider of the two, since by seeds alone an entry that always wins would have an interval
-    // of zero. In 200 trials with known strengths, 19 of 20 intervals contain the true value, as a
-    // test verifies.
+    // Take the wider of the two: clustering by seed alone would give an entry that always wins an
+    // interval of zero width. In 200 trials with known strengths, 19 of 20 intervals contain the
+    // true value, as a test verifies.
     let clustered = &covariance * spread * &covariance * (seeds / (seeds - 1.0));
     // Only an entry's difference from the mean of all entries is known; the mean itself is
     // arbitrary.
@@ -208,7 +208,7 @@ mod tests {
             rated[0].high.expect("an interval") - rated[0].elo > 100.0,
             "equal seeds do not mean no error: {rated:?}"
         );
-        // Four seeds would give an interval of thousands.
+        // Four seeds would give an interval thousands of points wide.
         let rated = ratings(2, &meetings([0, 1], 4, 4));
         assert!(
             rated
@@ -253,7 +253,7 @@ mod tests {
         assert!(width(&alike) > 0.95 * width(&apart), "{apart:?} {alike:?}");
     }
 
-    /// With known strengths: counts the intervals that contain them.
+    /// Plays games with known strengths and counts the intervals that contain them.
     #[test]
     fn nineteen_of_twenty_intervals_have_the_truth() {
         let truth = [0.9, 0.3, 0.0, -1.2];

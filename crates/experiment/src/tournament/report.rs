@@ -49,14 +49,15 @@ pub struct Report {
     pub entries: Vec<Row>,
     /// Each entry against each other; rows and columns are in the same order.
     pub matrix: Vec<Cell>,
-    /// The ratings over time: after the first games, in the order in which they were played.
+    /// The history of the ratings: after growing numbers of games, in the order in which they were
+    /// played.
     #[serde(default)]
     pub history: Vec<Standings>,
     /// Games that could not start.
     pub failures: Vec<Failure>,
     /// Every game played.
     pub matches: Vec<MatchRow>,
-    /// The games themselves, so that any of them can be replayed wherever the report is.
+    /// The plan with all its files, so that any game can be replayed from the report alone.
     #[serde(default)]
     pub plan: Option<Packed>,
 }
@@ -123,10 +124,10 @@ pub struct Cell {
     pub seeds: Seeds,
 }
 
-/// The ratings after the first games.
+/// The ratings after some of the games.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Standings {
-    /// The number of games played by then.
+    /// The number of games played so far.
     pub games: usize,
     /// The Elo ratings in the order of [`Report::entries`]; `None` before an entry's first game.
     pub elo: Vec<Option<f64>>,
@@ -301,7 +302,7 @@ fn history<'a>(played: impl Iterator<Item = &'a Record>, ranks: &[usize]) -> Vec
             sides: one.sides.map(|entry| place(entry).unwrap_or_default()),
             ..*one
         };
-        // All as one seed, since intervals are not needed.
+        // Treat all games as one seed, since intervals are not needed.
         let rated = ratings(entries.len(), &[all[..games].iter().map(renamed).collect()]);
         Standings {
             games,

@@ -1,6 +1,7 @@
 //! The kinds of input and their guarantees.
 
 mod address;
+mod import;
 mod keys;
 mod mavlink;
 mod message;
@@ -37,8 +38,9 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 12] = [
+pub const TARGETS: [Target; 13] = [
     address::TARGET,
+    import::TARGET,
     keys::TARGET,
     mavlink::TARGET,
     message::TARGET,

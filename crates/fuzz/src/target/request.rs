@@ -202,7 +202,7 @@ fn check(bytes: &[u8]) {
     read::<Water>(bytes);
     read::<Entry>(bytes);
     read::<GatewayEntry>(bytes);
-    // Not compared for equality, because a report contains errors.
+    // Reports cannot be compared for equality, because they contain errors.
     drop(serde_json::from_slice::<ProgressMessage>(bytes));
     // The numbers are trusted, because a node that joins a game trusts its sim.
     if let Some(Err(error)) = read::<GameInfo>(bytes).map(|info| info.scenario.check_received()) {

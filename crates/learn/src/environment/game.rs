@@ -93,7 +93,7 @@ impl Game {
             rewards: vec![0.0; count],
             watch,
         };
-        // Before the first pictures, so that the watch sees all inputs of the game.
+        // Called before the first pictures, so that the watch sees all inputs of the game.
         game.show(Moment::Decision);
         game.contest.pictures();
         game.boats = progress(&game.contest, setup.rewards.depend_on_others());

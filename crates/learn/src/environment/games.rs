@@ -32,7 +32,7 @@ pub struct Standing {
 pub struct Finished {
     /// Index of the game.
     pub game: usize,
-    /// Episode number, counted across the games, then the episodes.
+    /// Episode number: numbers count up first across the games, then across their episodes.
     pub number: u64,
     /// The state of play at the end.
     pub standing: Standing,
@@ -51,8 +51,8 @@ pub struct Rows<'a> {
     pub final_observations: &'a mut [f32],
     /// The reward of the step, by row.
     pub rewards: &'a mut [f32],
-    /// By row, whether the next action takes effect. It does not for a tagged boat, nor if a
-    /// strategy plays the enemies.
+    /// By row, whether the next action takes effect. It does not for a tagged boat, nor for an
+    /// enemy that a strategy controls.
     pub counts: &'a mut [bool],
 }
 
@@ -77,7 +77,8 @@ struct Slot {
     last: Option<Game>,
     /// Number of the current game; grows by the number of slots.
     number: u64,
-    /// Grows in the same way. With repeating starts, selects one of them.
+    /// Seed of the current game; grows in the same way. With repeating starts, it selects one of
+    /// them.
     seed: u64,
     ended: Option<Finished>,
     /// The teacher's actions in the last step, by row.
@@ -90,7 +91,7 @@ struct Slot {
 
 impl Games {
     /// Starts `games` games on `threads` threads, with watches on request. Seeds count up from
-    /// `seed`, across the games, then the episodes.
+    /// `seed`, first across the games, then across their episodes.
     ///
     /// # Errors
     /// [`SetupError`] if the setup cannot be played.
@@ -160,14 +161,15 @@ impl Games {
         &self.finished
     }
 
-    /// The teacher's actions in a game's last step, by row. `None` if no action of the policy
-    /// corresponds.
+    /// The teacher's actions in a game's last step, by row. `None` if the policy has no
+    /// corresponding action.
     pub fn taught(&self, game: usize) -> &[Option<Action>] {
         &self.slots[game].taught
     }
 
-    /// A game's values for a critic beyond the observations, row by row: current, and at the end of
-    /// a game that ended in the last step. Rows of boats without actions are omitted.
+    /// The values beyond the observations that a critic receives for a game, row by row: the
+    /// current ones, and those at the end of a game that ended in the last step. Rows of boats
+    /// without actions are omitted.
     pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
         let [now, last] = &self.slots[game].truth;
         (now, last)

@@ -21,7 +21,7 @@ pub enum Control {
     Helm(Box<Strategy>),
 }
 
-/// A strategy that plays in place of the policy, as its model to imitate.
+/// A strategy that plays in place of the policy, for the policy to imitate.
 #[derive(Clone, Debug)]
 pub struct Teacher {
     /// The strategy.
@@ -59,8 +59,8 @@ pub struct Setup {
     pub decisions_per_step: u32,
     /// Maximum number of steps of an episode. `None`: until the game is over.
     pub steps_max: Option<u32>,
-    /// The number of different starts, which repeat. The slowest part of a new game, creating sea
-    /// and boats, is done once per start. `None`: every game has a new start.
+    /// The number of different starts, used in rotation. The slowest part of a new game, creating
+    /// sea and boats, is done once per start. `None`: every game has a new start.
     pub starts: Option<u32>,
     /// The learning team. `None`: alternates with the seed.
     pub learner: Option<TeamId>,
@@ -130,7 +130,7 @@ pub enum SetupError {
     NoStart(#[from] sim::NoStart),
 }
 
-/// The error of a field with an invalid value.
+/// The error for a field with an invalid value.
 pub(crate) fn wrong(field: &'static str, found: impl ToString, allowed: &str) -> SetupError {
     SetupError::Field {
         field,

@@ -11,7 +11,7 @@ impl Setup {
     /// the stage's strategies. Only the first opponent has a draw weight yet.
     ///
     /// # Errors
-    /// [`SetupError`]: the faults of a file, or why the setup cannot be played.
+    /// [`SetupError`]: the faults in a file, or why the setup cannot be played.
     pub fn of_stage(training: &Training, stage: &Stage) -> Result<Setup, SetupError> {
         let itself = (stage.self_play > 0.0 || stage.past_selves > 0.0).then_some(None);
         let strategies = stage

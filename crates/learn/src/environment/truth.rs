@@ -64,8 +64,8 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
     // A default cursor, since past events do not matter.
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
-    // Used only in training. Only the boats' future decisions remain unknown to the critic. It is
-    // stored next to the observation, and no policy ever receives it.
+    // Only for training: the critic knows everything but the boats' future decisions. These values
+    // are stored next to the observation, and no policy ever receives them.
     let frame = contest.frame(&mut cursor);
     let scenario = contest.scenario();
     let field = &scenario.field;

@@ -17,5 +17,5 @@ pub enum Moment {
 pub type Watch = Box<dyn FnMut(&mut Contest, Moment) + Send>;
 
 /// Creates the watch of the game with this number, if the game is to be watched. Numbers count up
-/// across the games, then the episodes.
+/// first across the games, then across their episodes.
 pub type Watches = Arc<dyn Fn(u64) -> Option<Watch> + Send + Sync>;

@@ -64,8 +64,8 @@ impl DqnLearner {
         loss
     }
 
-    /// The gradient with respect to the network's parameters, and the loss: the mean Huber loss,
-    /// with a limit of 1, of the temporal-difference errors.
+    /// The gradient with respect to the network's parameters, and the loss: the mean Huber loss (δ
+    /// = 1) of the temporal-difference errors.
     pub fn gradient(&self, minibatch: &Minibatch<u16>, settings: &Dqn) -> (Vec<f32>, f32) {
         let size = self.network.sizes()[0];
         let slopes: Vec<Slope> = minibatch

@@ -16,8 +16,8 @@ pub struct Transition<'a, A> {
     pub next_observation: &'a [f32],
     /// Whether the step ended the game, so that no rewards follow.
     pub over: bool,
-    /// Whether the boat followed the action. If not, only values are learned from the transition: a
-    /// tagged boat is steered home.
+    /// Whether the boat followed the action. If not, as for a tagged boat, which is steered home,
+    /// only values are learned from the transition.
     pub counts: bool,
 }
 

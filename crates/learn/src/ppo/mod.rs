@@ -253,7 +253,7 @@ impl ActorCritic {
         for ((i, logits), by) in of_rows {
             let i = *i as usize;
             // A tagged boat's actions have no effect; policies that learned from them left the
-            // field. The critic does learn from these samples: before that, it misjudged being
+            // field. The critic does learn from these samples: without them it misjudged being
             // tagged, and policies that won 16 of 20 games against Pav01 won none after half a
             // million more samples.
             if !batch.counts[i] {
@@ -473,8 +473,8 @@ mod tests {
         let logits = [0.3_f64, -1.1, 0.8, 0.1, -0.4];
         let mut logs = [0.0; 5];
         log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
-        // Within the limits; beyond them with more to gain; and beyond them, when the policy must
-        // return.
+        // Ratios within the limits; ratios beyond them that are clipped; and ratios beyond them
+        // with a gradient that leads back.
         for (change, advantage) in [
             (0.05, 1.3),
             (0.05, -0.7),

@@ -99,7 +99,7 @@ pub struct Potential {
     /// capture place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub attack: f64,
-    /// Negative, for a tagged boat: this much per field's width from its untag place.
+    /// For a tagged boat: minus this much per field width of distance from its untag place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub untag: f64,
 }
@@ -119,8 +119,8 @@ pub struct Place {
     /// without intruders.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub intruder: f64,
-    /// An eighth of the field's width from the own flag towards its nearest untagged enemy, or at
-    /// that enemy if nearer; 0 a quarter of the width away.
+    /// An eighth of the field's width from the team's flag towards its nearest untagged enemy, or
+    /// at that enemy if nearer; 0 a quarter of the width away.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub guard: f64,
     /// As `guard`, for an untagged teammate on the enemies' side instead of the flag: the one

@@ -42,7 +42,8 @@ pub struct Among {
     /// Proximity to the nearest intruder, an untagged enemy on the boat's side: 1 at its position,
     /// 0 at a distance of a field width or more, or without intruders.
     pub at_intruder: f64,
-    /// Proximity to the place that guards the own flag; see [`Place::guard`](super::Place::guard).
+    /// Proximity to the place that guards the team's flag; see
+    /// [`Place::guard`](super::Place::guard).
     pub on_guard: f64,
     /// Proximity to the place that shields a teammate; see [`Place::shield`](super::Place::shield).
     pub at_shield: f64,
@@ -111,7 +112,7 @@ fn of_boats(field: &Field, boats: &[Placed], among_others: bool) -> Vec<BoatProg
 
 /// The places from which flags and teammates are protected.
 struct Posts {
-    /// By team, the place that guards its flag; of several flags, that nearest to an untagged
+    /// By team, the place that guards its flag: if it has several, the one nearest to an untagged
     /// enemy. `None` without untagged enemies.
     flag: [Option<Ned>; 2],
     /// Untagged boats on the enemies' side: index, distance to the nearest untagged enemy in

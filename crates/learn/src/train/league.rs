@@ -8,13 +8,13 @@ use std::cmp::Ordering;
 
 /// Draw weight of an opponent that never wins, relative to equal weights.
 const LEAST: f64 = 0.1;
-/// Decay of a game's weight per later game.
+/// Factor on a game's weight for each later game.
 const MEMORY: f64 = 0.98;
 
 /// A past version of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PastSelf {
-    /// Samples learned by that time.
+    /// Number of samples that it had learned from.
     pub(super) samples: u64,
     onnx: Vec<u8>,
 }

@@ -50,7 +50,7 @@ pub struct Trainer {
     /// By stage: updates between restarts of all games.
     updates_per_epoch: Vec<u64>,
     state: State,
-    /// Whether the games are still at their last restart although the state is later.
+    /// Whether the games are still at their last restart and must be replayed to match the state.
     is_behind: bool,
 }
 
@@ -71,8 +71,8 @@ pub struct Progress {
     pub evaluated: Option<Evaluated>,
     /// Whether the current policy is the best so far.
     pub is_best: bool,
-    /// Whether all games restart: then the state is smallest, and a training run resumes from it at
-    /// once.
+    /// Whether all games restart: the state is then smallest, and a run that resumes from it has no
+    /// updates to replay.
     pub games_restart: bool,
 }
 
@@ -178,7 +178,7 @@ impl Trainer {
     /// [`SetupError::NoStart`] if a game cannot begin.
     ///
     /// # Panics
-    /// After an update since the training was started or resumed: games would restart.
+    /// If it has been updated since it was started or resumed: games would restart.
     pub fn watch(&mut self, watches: Watches) -> Result<(), SetupError> {
         assert!(
             self.state.updates_of_epoch == 0 || self.is_behind,
@@ -420,8 +420,8 @@ impl Trainer {
         Ok((Some(evaluated), is_best))
     }
 
-    /// Starts the next stage or restarts all games if due; then the state of the games does not
-    /// matter.
+    /// Starts the next stage or restarts all games if due; the state of the games then no longer
+    /// matters.
     fn begin_anew(&mut self, evaluated: Option<&Evaluated>) -> Result<bool, SetupError> {
         let state = &mut self.state;
         let stage: &Stage = &self.training.stage[state.stage];
@@ -531,7 +531,7 @@ fn environment(
     Ok(environment)
 }
 
-/// Brings games from their restart to the state after these updates.
+/// Replays games from their restart through these updates.
 fn play_again(
     environment: &mut VectorEnvironment,
     updates: &[PlayedUpdate],

@@ -1,5 +1,8 @@
 //! An update of an off-policy algorithm: exploring games fill the replay buffer, then the
 //! optimisers take steps on samples drawn from it.
+//!
+//! Entries in the 2023 games used TD3 and double DQN: with these algorithms, the results in their
+//! paper can be reproduced.
 
 use super::{Update, outputs};
 use crate::Learnt;
@@ -40,8 +43,6 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
         } = self;
         let actor = &learner.actor;
         let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
-            // Entries of the 2023 games used TD3 and double DQN, so that the results of their paper
-            // can be reproduced.
             if is_new && known < settings.warm_up {
                 return counts.iter().map(|_| td3::drawn(stream)).collect();
             }

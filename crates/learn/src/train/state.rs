@@ -45,7 +45,7 @@ pub(super) struct PlayedUpdate {
 /// An evaluation of a policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluated {
-    /// Samples learned by that time.
+    /// Number of samples that the policy had learned from.
     pub samples: u64,
     /// Index of the stage.
     pub stage: usize,
@@ -67,7 +67,7 @@ impl Evaluated {
 /// The best policy of a training run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
-    /// Samples learned by that time.
+    /// Number of samples that it had learned from.
     pub samples: u64,
     /// The fraction of all evaluation games won; a draw counts half.
     pub won: f64,

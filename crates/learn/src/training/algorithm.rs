@@ -135,7 +135,7 @@ pub struct Td3 {
     /// Standard deviation of noise on the target policy's actions.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.2))]
     pub smoothing: f32,
-    /// Limit of this noise.
+    /// Limit of the smoothing noise.
     #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub smoothing_max: f32,
     /// Steps of the critics' optimisers per step of the policy's.
@@ -180,7 +180,7 @@ pub struct Dqn {
     /// Final fraction of uniformly random actions.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.05))]
     pub epsilon_end: f32,
-    /// Samples over which the fraction falls linearly.
+    /// Samples over which the fraction of random actions falls linearly.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64), extend("default" = 300_000))]
     pub epsilon_samples: u64,
 }

@@ -97,7 +97,7 @@ pub struct League {
     /// Samples between kept policies.
     #[schemars(range(min = 1000, max = 1_000_000_000), extend("default" = 500_000))]
     pub every_samples: u64,
-    /// Number of policies kept, the newest.
+    /// Number of newest policies kept.
     #[schemars(range(min = 1, max = 1000), extend("default" = 20))]
     pub most: usize,
     /// Opponents are drawn in proportion to this power of their fraction of wins; 0: uniformly
@@ -125,7 +125,7 @@ pub struct Evaluation {
 /// A stage of training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stage {
-    /// Its name.
+    /// Name of the stage.
     #[schemars(with = "Name")]
     pub name: String,
     /// Game file with two teams of equal size; its strategies are ignored.
@@ -151,17 +151,17 @@ pub struct Stage {
     /// Relative frequency of the policy itself as the opponent.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub self_play: f64,
-    /// Relative frequency of past policies as the opponent, all together.
+    /// Relative frequency of past policies as the opponent, in total.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub past_selves: f64,
-    /// Relative frequency of the strategies in `opponent`, all together.
+    /// Relative frequency of the strategies in `opponent`, in total.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 1))]
     pub strategies: f64,
     /// Strategies as opponents.
     #[schemars(length(max = 100))]
     pub opponent: Vec<Opponent>,
-    /// Number of different starts, which repeat: seas and boats are created once. Default: a new
-    /// start every game.
+    /// Number of different starts, used in rotation: seas and boats are created once. Default: a
+    /// new start every game.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub starts: Option<u32>,
     /// Maximum duration of an episode, s. Default: whole games.

@@ -116,7 +116,7 @@ fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
     {
         assert_eq!(&state[..observation], observed);
         let contest = environment.contest(row / 4);
-        // The learning team's boats come first. In every second game that is the second team.
+        // The learning team's boats come first: in every second game, those of the second team.
         let me = VehicleId::at((row + if row / 4 == 0 { 2 } else { 0 }) % 4);
         let scenario = contest.scenario();
         let field = &scenario.field;
@@ -251,8 +251,8 @@ fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
     let outcome =
         arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, goes_on).unwrap();
     assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
-    // Set-points nearly always; straight ahead at full speed more often than by chance; turns of
-    // every kind.
+    // Expect set-points at nearly every decision, straight ahead at full speed more often than by
+    // chance, and turns of every kind.
     let times = |action| {
         taught
             .iter()

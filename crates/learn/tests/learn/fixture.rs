@@ -1,4 +1,4 @@
-//! Shared by the tests: shipped files, setups of environments, and short training runs.
+//! Helpers for the tests: shipped files, setups of environments, and short training runs.
 
 use agent::ActionSpace;
 use learn::environment::{

@@ -138,7 +138,7 @@ fn changed(change: impl Fn(&mut Policy)) -> Strategy {
 #[test]
 fn sampled_actions_are_drawn_by_the_seed() {
     let played = |strategy: &Strategy, draws: u64| {
-        // The same boats, sea and starts: only the minds know this seed.
+        // The boats, the sea and the starts stay the same: only the minds use this seed.
         let mut scenario = game("surveyor_2v2").of_seed(3).unwrap();
         scenario.seed = draws;
         let minds = (0..4).map(|i| agent::mind_by(&scenario, VehicleId::at(i), strategy));

@@ -1,4 +1,5 @@
-//! Training runs with TD3 and double DQN learn, and their files play the trained policy.
+//! Training runs with TD3 and double DQN learn, and their model files play like the trained
+//! policies.
 
 use super::fixture::{self, stage, trainer, training, updated};
 use learn::nn::Trace;
@@ -37,7 +38,7 @@ pub(crate) fn short(algorithm: Algorithm) -> Training {
 }
 
 /// Each algorithm with a buffer that overflows. Games restart after a number of optimiser steps
-/// that is not a multiple of 7, so that a resumed training depends on that number.
+/// that is not a multiple of 7, so that a resumed run depends on that number.
 pub(crate) fn algorithms() -> [Algorithm; 2] {
     let td3 = Td3 {
         steps: 8,

@@ -94,7 +94,7 @@ fn boats_move_as_in_pyquaticus() {
         ..game("pyquaticus_2v2")
     };
     let mut competition = game("mctf_2026");
-    // Off in the recording as well.
+    // Power play is off in the recording as well.
     competition.rules.power_play = SimTime::ZERO;
     // In the recording, both teams start from the north.
     let red_1 = competition.vehicles[3].start_position.clone();

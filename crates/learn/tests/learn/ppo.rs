@@ -10,7 +10,7 @@ use primitives::stream::Stream;
 #[test]
 fn gradients_are_the_slopes_of_the_output() {
     const STEP: f32 = 1e-2;
-    // For values of about 1 by finite differences in single precision.
+    // Suits values of about 1, from finite differences in single precision.
     const TOLERANCE: f32 = 5e-3;
     let mut stream = Stream::new(3, "gradient");
     let mut network = Perceptron::new(&[5, 7, 6, 3], 1.0, &mut stream);
@@ -84,7 +84,8 @@ fn first_weights_are_orthogonal_with_their_gain() {
 
 #[test]
 fn adam_goes_as_its_authors_say() {
-    // The first step is the learning rate against the sign; the second was computed by hand.
+    // The first step is the learning rate, against the gradient's sign; the second was computed by
+    // hand.
     let settings = AdamSettings {
         epsilon: 0.0,
         norm_max: None,
@@ -99,7 +100,8 @@ fn adam_goes_as_its_authors_say() {
             && (parameters[1] + 0.9).abs() < 1e-6
     );
     adam.step(&mut parameters, &[0.0, -4.0], 0.1);
-    // mean 0.9 * 0.3 = 0.27 of 0.19, square 0.999 * 0.009 = 0.008991 of 0.001999.
+    // Mean 0.9 * 0.3 = 0.27, corrected by 0.19; mean square 0.999 * 0.009 = 0.008991, corrected by
+    // 0.001999.
     let want = 0.9 - 0.1 * (0.27 / 0.19) / libm::sqrtf(0.008_991 / 0.001_999);
     assert!(
         (parameters[0] - want).abs() < 1e-4,

@@ -212,7 +212,7 @@ fn a_policy_learns_to_choose_what_its_teacher_is_at() {
         .iter()
         .filter_map(|one| one.learnt.policy_loss)
         .collect();
-    // Ten options, initially.
+    // At first, the policy chooses among ten options at random.
     let first = losses[0];
     let last = losses[losses.len() - 1];
     assert!(first > 1.5 && last < 0.7, "cross-entropy, nats: {losses:?}");

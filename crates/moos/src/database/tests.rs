@@ -103,7 +103,7 @@ fn patterns_choose_source_and_variable_and_include_variables_to_come() {
         vec![notify("NAV_X", 1.0), notify("DEPTH", 1.0)],
         NOW_S,
     );
-    // As written by MOOS clients and by `pymoos2`.
+    // Patterns as written by MOOS clients and by `pymoos2`.
     for (spec, want) in [
         (
             "AppPattern=p?,VarPattern=NAV_*,Interval=0",

@@ -23,7 +23,7 @@ fn a_file_cut_anywhere_is_refused() {
     for model in ["operators", "old_operators", "two_inputs"] {
         let bytes = file(model);
         for length in 0..bytes.len() {
-            // Truncated before optional fields, the file is still valid.
+            // A file truncated before optional fields is still valid.
             if let Ok(network) = Network::read(&bytes[..length]) {
                 assert!(network.metadata().len() < 2, "{model} of {length} bytes");
             }

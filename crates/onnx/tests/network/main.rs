@@ -161,7 +161,7 @@ fn an_evaluation_depends_on_its_row_alone() {
         };
         for case in &cases {
             network.evaluate(&case.input);
-            // On another thread, where policies are evaluated during training.
+            // Evaluate on another thread, as during training.
             let mut other = fresh.clone();
             let input = case.input.clone();
             let thread = std::thread::spawn(move || {

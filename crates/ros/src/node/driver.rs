@@ -82,7 +82,7 @@ pub(super) struct Driver {
     pub(super) boat: VehicleId,
     pub(super) cell: Arc<RequestCell>,
     pub(super) follower: Follower,
-    /// Where pictures go on their way to ROS 2.
+    /// Passes pictures on to ROS 2.
     pub(super) incoming: Arc<Latest<Incoming>>,
 }
 

@@ -32,7 +32,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// Interval at which a bridge without news checks whether the game continues.
+/// Interval at which an idle bridge checks whether the game is still running.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// Absence of the sim after which the game counts as over. A paused game sends no frames.
 const MISSING_MAX: Duration = Duration::from_secs(5);
@@ -59,7 +59,7 @@ pub struct Settings {
     pub is_operator: bool,
     /// Maximum time to search for the sim and to wait for free boats.
     pub wait: Duration,
-    /// Set from outside to end the bridge.
+    /// Set by the caller to end the bridge.
     pub stop: Arc<AtomicBool>,
 }
 
@@ -116,7 +116,7 @@ pub enum RosError {
 enum Incoming {
     /// The bytes of a frame.
     Frame(Vec<u8>),
-    /// A team's picture, with bad numbers removed.
+    /// A team's picture, with invalid numbers removed.
     Picture(Box<Picture>),
 }
 
@@ -129,8 +129,9 @@ struct Shared {
     refusals: Arc<Watched<Refusals>>,
     /// Set to end all threads.
     ended: Arc<AtomicBool>,
-    /// Why the agent is waiting for its boats, and how it ended.
+    /// Why the agent is waiting for its boats.
     agent_news: Arc<Watched<Option<String>>>,
+    /// How the agent ended.
     agent_end: Arc<Watched<Option<Result<(), NodeError>>>>,
 }
 

@@ -137,7 +137,7 @@ impl Publisher {
         })
     }
 
-    /// Sends the truth. `bytes` are those of the frame.
+    /// Sends the truth. `bytes` is the encoded frame.
     pub(super) fn send_frame(&mut self, bytes: Vec<u8>, frame: &Frame) -> Result<(), BusError> {
         self.tick(frame.stamp)?;
         if self.truth.is_empty() {

@@ -20,7 +20,8 @@ const REQUESTS: usize = 16;
 const SET_BOOL: &str = "std_srvs/srv/SetBool";
 const TRIGGER: &str = "std_srvs/srv/Trigger";
 const RESET: &str = "squall_msgs/srv/Reset";
-/// The services: name, type, and the commands for `true` and `false`. Others have only the first.
+/// The services: name, type, and the commands for `true` and `false`. Types without a flag use only
+/// the first.
 const SERVICES: [(&str, &str, [Control; 2]); 6] = [
     (
         "/squall/e_stop",
@@ -38,7 +39,7 @@ const SERVICES: [(&str, &str, [Control; 2]); 6] = [
     ),
 ];
 
-/// The command of a request to a service of this type, which has these commands.
+/// The command in a request to a service of this type with these commands.
 fn command(type_name: &str, [on, off]: [Control; 2], request: &[u8]) -> Option<Control> {
     if type_name == RESET {
         return codec::decode_plain(request).map(Control::Reset);

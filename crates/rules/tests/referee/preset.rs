@@ -6,7 +6,7 @@ use rules::Rules;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The shipped rule books, modified so that boats may be side by side and every look checks
+/// The shipped rule books, modified so that boats may be side by side and every check covers
 /// everything.
 static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
@@ -38,7 +38,7 @@ pub(crate) fn all() -> [Rules; 4] {
     SHIPPED.clone()
 }
 
-/// The paper's rules: grab 1, capture 2 at one's own flag, tag cooldown 10 s.
+/// The paper's rules: grab 1, capture 2 at the team's own flag, tag cooldown 10 s.
 pub(crate) fn aquaticus_2023() -> Rules {
     SHIPPED[0].clone()
 }

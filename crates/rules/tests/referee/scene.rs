@@ -18,7 +18,7 @@ pub(crate) struct Scene {
     pub(crate) now: SimTime,
 }
 
-/// Time between two looks.
+/// Time between two checks.
 pub(crate) const TICK: SimTime = SimTime(100_000_000);
 
 /// Flags at (20, 40) and (140, 40), the scrimmage line at x = 80.
@@ -122,7 +122,7 @@ impl Scene {
         self
     }
 
-    /// Lets time pass without a look.
+    /// Lets time pass without a check.
     pub(crate) fn wait(&mut self, seconds: f64) -> &mut Scene {
         self.now = self.now + SimTime::from_s(seconds) - TICK;
         self

@@ -3,12 +3,12 @@
 //! - `## NAME` begins a scene, `# …` is a comment.
 //! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, its overrides (JSON values, times
 //!   in nanoseconds), and `boats=2` for each team (default 1), `sides=3` (default 2),
-//!   `flag=[TEAM,X,Y]` for another flag.
+//!   `flag=[TEAM,X,Y]` for an extra flag.
 //! - `0 at 60 40; 1 at 65 40 -> Tagged 1 Opponent 0, …`: boats are placed at x and y in metres, and
-//!   the next look returns exactly these events, in this order; or `nothing`. Boats stay until they
-//!   are placed elsewhere. `0 goes 60 40` moves a boat there from its position. `0 asks tag` (or
-//!   `grab`) is a request from then on. `wait 10` lets 10 s pass before the look, `clock 0` sets
-//!   the time. An event is its name, then its vehicle, flag or team.
+//!   the next check returns exactly these events, in this order; or `nothing`. Boats stay until
+//!   they are placed elsewhere. `0 goes 60 40` moves a boat there from its position. `0 asks tag`
+//!   (or `grab`) is a request from then on. `wait 10` lets 10 s pass before the check, `clock 0`
+//!   sets the time. An event is its name, then its vehicle, flag or team.
 //! - `WHAT is VALUE`: a part of the referee's standing as JSON (`vehicles.0.tagged`, `score`,
 //!   `flags.1.carrier`; a time may be `LONG_AGO`), `directive VEHICLE`, or `keepout VEHICLE X Y`
 //!   with the circle's x, y and radius.
@@ -110,7 +110,7 @@ fn asked(scene: &Scene, what: &str) -> Told<String> {
     })
 }
 
-/// Executes one step before a look.
+/// Executes one step before a check.
 fn step(scene: &mut Scene, words: &str) -> Told<()> {
     match words.split(' ').collect::<Vec<_>>()[..] {
         [vehicle, "at", x, y] => {

@@ -1,4 +1,4 @@
-//! Long random walks: invariants that hold at every look, whatever the boats do.
+//! Long random walks: invariants that hold at every check, whatever the boats do.
 
 use crate::mirror::Mirror;
 use crate::preset;
@@ -74,7 +74,7 @@ impl Walk {
         }
     }
 
-    /// The motion of every boat, look by look, from one interesting place to the next.
+    /// The motion of every boat, check by check, from one interesting place to the next.
     fn fleets(&self) -> Vec<Vec<Leg>> {
         let mut stream = Stream::new(self.seed, "walk");
         let start_position = |_| Ned::from_xy(80.0, 40.0);
@@ -155,7 +155,7 @@ fn generous(fleet: &[Leg], reach_m: f64) -> Vec<Pair> {
     .collect()
 }
 
-/// A look at boats that need no requests.
+/// The referee's view of boats that need no requests.
 fn look<'a>(legs: &'a [Leg], near: &'a [Pair], now: SimTime) -> Look<'a> {
     Look {
         legs,
@@ -165,7 +165,7 @@ fn look<'a>(legs: &'a [Leg], near: &'a [Pair], now: SimTime) -> Look<'a> {
     }
 }
 
-/// Plays a walk; calls `each` with every look's (before, after, fleet, events).
+/// Plays a walk; calls `each` with (before, after, fleet, events) at every check.
 fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Leg], &[Event])) {
     let referee = walk.referee();
     let mut standing = referee.start(&mut Stream::new(walk.seed, "rules"));
@@ -320,7 +320,7 @@ fn points(referee: &Referee, events: &[Event], team: TeamId) -> u32 {
         .sum()
 }
 
-/// Events of one look, independent of the order of teams.
+/// Events of one check, independent of the order of teams.
 fn sorted(events: impl Iterator<Item = Event>) -> Vec<String> {
     let mut events: Vec<String> = events.map(|event| format!("{event:?}")).collect();
     events.sort_unstable();

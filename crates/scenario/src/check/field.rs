@@ -8,7 +8,7 @@ use primitives::frame::Ned;
 use primitives::id::TeamId;
 use rules::field::{Field, Flag, Obstacle, Plan};
 
-/// Maximum distance of a relevant obstacle outside the field, m.
+/// Maximum distance of an obstacle from the field, m.
 const NEAR_M: f64 = 50.0;
 
 impl ScenarioFile for Field {

@@ -26,8 +26,8 @@ impl<F: ScenarioFile> FileCache<F> {
         }
     }
 
-    /// The index of `owner`'s version of the file that `given`, at `path` in the game file, refers
-    /// to.
+    /// The index of `owner`'s version of the file referenced by `given`, which is at `path` in the
+    /// game file.
     pub(super) fn index(
         &mut self,
         game: &Document<raw::Game>,
@@ -49,7 +49,7 @@ impl<F: ScenarioFile> FileCache<F> {
         Some(index)
     }
 
-    /// The index of a file, regardless of its name: two versions of one strategy may occur.
+    /// The same without the check for unique names: a strategy may have two versions.
     pub(super) fn index_at(
         &mut self,
         game: &Document<raw::Game>,

@@ -146,7 +146,7 @@ fn link(document: &Document<raw::Game>, field: &Field) -> Option<Link> {
     link
 }
 
-/// Reports a setting that the game overrides.
+/// Reports a time-limit setting that the game's own duration overrides.
 fn check_duration(document: &Document<raw::Game>) {
     let mut settings = document.loader.overrides.settings.iter();
     if document.raw.duration_s.is_some()
@@ -219,7 +219,7 @@ fn check_tick(document: &Document<raw::Game>, tick: SimTime, boats: &[Boat]) {
     }
 }
 
-/// Checks that the referee checks only at whole ticks.
+/// Checks that the referee's checks fall on whole ticks.
 fn check_looks(document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
     let Some(rules) = rules else { return };
     for (key, period) in [
@@ -238,7 +238,8 @@ fn check_looks(document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rul
     }
 }
 
-/// Checks that models suit the team size, which is fixed unless they have spare slots.
+/// Checks that models fit the team sizes: the number of inputs is fixed unless they have spare
+/// slots.
 fn check_models(document: &Document<raw::Game>, entries: &[Entry], strategies: &[Strategy]) {
     for Entry {
         name,
@@ -417,7 +418,7 @@ impl Fleet<'_> {
         is_new
     }
 
-    /// Whether there is space for this many vehicles at `path`.
+    /// Whether there is room for `count` more vehicles, given at `path`; reports it if not.
     fn is_room(&self, path: &str, count: usize) -> bool {
         let total = self.entries.len() + count;
         if total > VEHICLES_MAX {

@@ -16,8 +16,8 @@ use rules::field::Field;
 
 /// Margin of a default rectangle on each side, m.
 const MARGIN_M: f64 = 2.0;
-/// Maximum fraction of the rectangle taken up by the boats' gaps as squares. Sequential placement
-/// jams at about 0.69.
+/// Maximum fraction of the rectangle's area that the boats may need, with a square of side `gap_m`
+/// for each. Random sequential placement jams at about 0.69.
 const FULLEST: f64 = 0.5;
 
 /// The start position given for the vehicle at `path`; `None` means on the team's line.

@@ -15,12 +15,11 @@ pub enum ObservationSpace {
     /// each from -1 to 1.
     Pyquaticus,
     /// The values of Pyquaticus from November 2023 to January 2024: `pyquaticus` without the
-    /// scores, and with distances relative to the field's diagonal plus 10 m, but the distance to
-    /// the scrimmage line relative to half the field's width.
+    /// scores. Distances are relative to the field's diagonal plus 10 m, except the distance to the
+    /// scrimmage line, which is relative to half the field's width.
     #[serde(rename = "pyquaticus_2023")]
     Pyquaticus2023,
-    /// The values of the 2026 competition: `pyquaticus`, and for each boat whether it is out of
-    /// action.
+    /// The values of the 2026 competition: `pyquaticus`, plus whether each boat is out of action.
     #[serde(rename = "pyquaticus_2026")]
     Pyquaticus2026,
     /// Squall's own values: sensor and radio data, in a frame that is the same for both teams.

@@ -28,7 +28,7 @@ pub struct Boat {
     pub(crate) autopilot: Option<Autopilot>,
     /// Instead of thruster and autopilot: the point boat of MOOS, which ignores waves and wind.
     pub(crate) kinematic: Option<Kinematic>,
-    /// Behaviour without an order, out of action, or on a hold order.
+    /// What the boat does without an order, while out of action, or on a hold order.
     #[schemars(extend("default" = "drifts"))]
     pub(crate) hold: Hold,
     #[serde(flatten)]

@@ -32,7 +32,7 @@ pub struct Game {
     /// Seeds that replace `seed` during the game, in chronological order.
     #[schemars(length(max = 1000), extend("default" = []))]
     pub(crate) reseed: Vec<Reseed>,
-    /// End of the game, s. Default: `time_limit_s` of the rules.
+    /// Duration of the game, s. Default: `time_limit_s` of the rules.
     #[schemars(range(min = 1, max = 86400))]
     pub(crate) duration_s: Option<f64>,
     /// Physics tick, s.
@@ -50,7 +50,7 @@ pub struct Game {
     /// The two teams; the first has the end at the field's `corner`.
     #[schemars(length(equal = 2), extend("x-expected" = "exactly two [[team]] tables"))]
     pub(crate) team: Vec<Team>,
-    /// Single boats. They precede all fleets in processing order.
+    /// Individual boats, processed before all fleets.
     pub(crate) vehicle: Vec<Vehicle>,
     /// Groups of boats.
     pub(crate) fleet: Vec<Fleet>,
@@ -83,7 +83,7 @@ pub(crate) struct Vehicle {
     pub(crate) heading_deg: Option<f64>,
     /// Instead of `at`: a random position in a rectangle.
     pub(crate) spawn: Option<Spawn>,
-    /// Source of its motion.
+    /// Source of the boat's motion.
     #[schemars(extend("default" = "simulated"))]
     pub(crate) source: Source,
 }
@@ -110,10 +110,12 @@ pub(crate) struct Fleet {
 /// A rectangle for random start positions, as seen from the team's own end.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Spawn {
-    /// From and to, m from the team's own end. Default: its own half, minus 2 m at each end.
+    /// Minimum and maximum distance from the team's own end, m. Default: its own half, minus 2 m at
+    /// each end.
     #[schemars(inner(range(min = 0, max = 20000)))]
     pub(crate) along_m: Option<[f64; 2]>,
-    /// From and to, m from the port edge. Default: the whole depth, minus 2 m at each edge.
+    /// Minimum and maximum distance from the port edge, m. Default: the whole depth, minus 2 m at
+    /// each edge.
     #[schemars(inner(range(min = 0, max = 20000)))]
     pub(crate) across_m: Option<[f64; 2]>,
     /// Minimum distance to other boats and obstacles, m.

@@ -1,8 +1,8 @@
 //! Scenario files as typed, where these differ from the checked types: `check` converts them.
 //!
-//! All other types of a scenario serve as both. Every key is declared once, in one form or the
-//! other; `schema` describes how. The doc comments are the descriptions in the JSON Schemas and the
-//! reference, so they are written for authors of files.
+//! All other types of a scenario are used in both forms. Every key is declared once, in one form or
+//! the other; `schema` describes how. The doc comments are the descriptions in the JSON Schemas and
+//! the reference, so they are written for authors of files.
 
 mod boat;
 mod field;
@@ -25,13 +25,13 @@ use super::diagnostics::NAME_PATTERN;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The path of another file, relative to the file that contains it. Empty if it was wrong or
-/// missing.
+/// The path of another file, relative to the file that contains it. Empty if the value was invalid
+/// or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("minLength" = 1, "x-expected" = "the path of a file"))]
 pub struct FilePath(pub(crate) String);
 
-/// A name. Empty if it was wrong or missing.
+/// A name. Empty if the value was invalid or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("pattern" = NAME_PATTERN))]
 pub struct Name(pub(crate) String);

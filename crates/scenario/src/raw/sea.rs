@@ -47,7 +47,7 @@ pub(crate) struct Waves {
     /// Compass bearing they come from, degrees. Default: that of the wind.
     #[schemars(range(min = -360, max = 360))]
     pub(crate) from_deg: Option<f64>,
-    /// Spread around that bearing.
+    /// Spread of directions around `from_deg`.
     #[schemars(extend("default" = "cosine_squared"))]
     pub(crate) spreading: Spreading,
     /// Exponent s of "cosine_2s".
@@ -152,7 +152,7 @@ pub(crate) struct Tide {
     /// Compass bearing of the flood, degrees.
     #[schemars(range(min = -360, max = 360))]
     pub(crate) toward_deg: f64,
-    /// Period, h; the moon's is 12.42.
+    /// Period, h; 12.42 for the principal lunar tide.
     #[schemars(range(min = 0.01, max = 1000), extend("default" = 12.42))]
     pub(crate) period_h: f64,
     /// Phase at the start: 0 is slack water before the flood, 0.25 maximum flood.

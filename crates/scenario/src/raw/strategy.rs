@@ -144,7 +144,8 @@ impl JsonSchema for Behaviour {
 /// Adds the common keys to those of one kind.
 fn complete(definition: &mut Json, kind: &str, common: &Json) {
     let mut properties = common["properties"].clone();
-    properties["kind"] = json!({ "type": "string", "description": "What it does.", "const": kind });
+    let description = "Kind of behaviour.";
+    properties["kind"] = json!({ "type": "string", "description": description, "const": kind });
     if let Some(weight) = definition.get("x-weight") {
         properties["weight"]["default"] = weight.clone();
     }

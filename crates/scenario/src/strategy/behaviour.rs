@@ -15,7 +15,7 @@ pub struct Behaviour {
     #[schemars(rename = "in", with = "Option<Vec<String>>")]
     #[schemars(length(min = 1), extend("x-expected" = "at least one mode"))]
     pub modes: Vec<bool>,
-    /// It runs only while this condition holds. Default: always.
+    /// Runs only while this condition holds. Default: always.
     #[schemars(with = "Option<String>")]
     pub when: Option<Expression>,
     /// Weight, at most that of the modes' op_region and avoid_collision. Safety behaviours default

@@ -43,7 +43,7 @@ pub enum Fact {
     OwnSide,
     /// The boat is outside the field.
     Outside,
-    /// The boat is out of action by power play.
+    /// The boat is out of action because of power play.
     Disabled,
     /// The boat may tag now: it is in play, and its cooldown is over.
     CanTag,
@@ -95,7 +95,7 @@ pub enum Measure {
     Closing,
     /// Speed over the ground, m/s; 0 if unknown.
     Speed,
-    /// Whether it currently exists.
+    /// Whether the place currently exists.
     Known,
     /// Whether it is on the team's side.
     OnOwnSide,

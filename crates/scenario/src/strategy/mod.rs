@@ -93,7 +93,7 @@ pub struct Helm {
     #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: Option<f64>,
     /// Bonus for decisions near the last one (30 degrees, 0.75 m/s), as a fraction of all weights
-    /// except those of `op_region`; more would outweigh safety.
+    /// except those of `op_region`; a larger bonus would outweigh safety.
     #[schemars(range(min = 0, max = 0.1), extend("default" = 0))]
     pub hysteresis: f64,
     /// Whether to correct for estimated drift and heading error, so that course and speed over the
@@ -319,7 +319,7 @@ pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
         all.find(|variant| variant.name() == name)
     }
 
-    /// All names, in the same order.
+    /// All names, in the order of [`Named::all`].
     fn names() -> Vec<&'static str> {
         Self::all().iter().map(|variant| variant.name()).collect()
     }

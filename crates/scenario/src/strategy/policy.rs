@@ -7,7 +7,7 @@ use crate::policy::PolicyModel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Follows a course and speed proposed by a trained model or an external program or person.
+/// Follows a course and speed proposed by a trained model, an external program or a person.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Policy {
     /// The proposing model; `None` means an external source.
@@ -22,15 +22,15 @@ pub struct Policy {
     #[serde(default)]
     #[schemars(with = "Option<String>", extend("x-expected" = "the name of a string variable"))]
     pub sets: Option<u16>,
-    /// Whether to sample each action from the model's probabilities, using the game's seed, not the
-    /// most likely action. Only for models with logits.
+    /// Whether to sample actions from the model's probabilities, using the game's seed, instead of
+    /// taking the most likely action. Only for models with logits.
     #[serde(default)]
     pub sampled: bool,
     /// Whether the model's actions are the boat's orders, as in Pyquaticus. Modes, rules and other
     /// behaviours then have no effect, and nothing keeps the boat safe; a tagged boat drives home.
     #[serde(default)]
     pub direct: bool,
-    /// Source of proposals without a model.
+    /// Source of external proposals.
     #[schemars(extend("default" = "program"))]
     pub by: Proposer,
     /// Maximum age of an external proposal, s.
@@ -94,7 +94,7 @@ pub struct Host {
     pub is_allowed: bool,
 }
 
-/// Source of proposals without a model.
+/// Source of external proposals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Proposer {

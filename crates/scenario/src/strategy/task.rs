@@ -130,7 +130,7 @@ pub enum Turn {
     Clockwise,
     /// Counterclockwise.
     Counterclockwise,
-    /// Depends on heading on arrival.
+    /// Depends on the heading on arrival.
     Best,
 }
 
@@ -155,10 +155,10 @@ pub struct Ellipse {
 pub struct StationKeep {
     /// Station. Default: the position at the start.
     pub at: Option<Place>,
-    /// Distance within which it is inactive, m.
+    /// Distance within which the behaviour is inactive, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 4))]
     pub inner_radius_m: Parameter,
-    /// Distance beyond which it drives at transit speed, m.
+    /// Distance beyond which the boat drives at transit speed, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub outer_radius_m: Parameter,
     /// Speed at the outer radius, falling to 0 at the inner one, m/s.
@@ -283,8 +283,8 @@ pub struct AvoidCollision {
     /// Distance to all boats beyond which it resumes, m. Default: 3 × `halt_m`.
     #[schemars(range(min = 0, max = 1000))]
     pub release_m: Option<Parameter>,
-    /// Time after which it also resumes, s; it stops again only after being clear of others.
-    /// Default: never.
+    /// Time after which the boat resumes anyway, s; it stops again only once it has been clear of
+    /// others. Default: never.
     #[schemars(range(min = 0.1, max = 86_400))]
     pub release_s: Option<Parameter>,
 }
@@ -303,8 +303,8 @@ pub enum Contacts {
     Opponent,
     /// Teammates.
     Mates,
-    /// Boats with which no tag is possible: teammates, tagged enemies, all while this boat is
-    /// tagged.
+    /// Boats with which no tag is possible: teammates, tagged enemies and, while this boat is
+    /// tagged, all boats.
     NoTag,
 }
 
@@ -348,7 +348,7 @@ pub struct OpRegion {
     /// Margin inside the field's edges, m; negative values enlarge the region.
     #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub margin_m: Parameter,
-    /// Distance inside the edge within which it turns away from courses that lead out, m.
+    /// Distance inside the edge within which the boat turns away from courses that lead out, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 6))]
     pub save_m: Parameter,
     /// Distance outside beyond which `beyond_halt` applies, m.
@@ -360,7 +360,7 @@ pub struct OpRegion {
     /// Time outside before the boat counts as outside, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 1))]
     pub exit_s: Parameter,
-    /// Time inside before it counts as inside, s.
+    /// Time inside before the boat counts as inside, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 1))]
     pub entry_s: Parameter,
     /// Speed on the way back, m/s.
@@ -375,9 +375,9 @@ pub struct OpRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BeyondHalt {
-    /// It returns.
+    /// The boat returns.
     ComesBack,
-    /// It stops its thrusters and drifts until recovered, as in MOOS-IvP.
+    /// The boat stops its thrusters and drifts until recovered, as in MOOS-IvP.
     Stops,
 }
 

@@ -1,8 +1,8 @@
 //! The background of the chart beneath the field: an image of the site, or its shoreline as
 //! GeoJSON.
 //!
-//! Both use WGS 84: GeoJSON has no other reference system since RFC 7946, and an image has a world
-//! file. The page places them relative to the field's datum.
+//! Both use WGS 84: GeoJSON by RFC 7946, and an image through its world file. The page places them
+//! relative to the field's datum.
 
 use primitives::input_file;
 use serde_json::{Value, json};
@@ -308,7 +308,7 @@ impl Shoreline {
             .iter()
             .map(Value::as_f64)
             .collect::<Option<Vec<f64>>>();
-        // The third number is a height.
+        // A third number is the height.
         let [lon, lat, ..] = numbers.unwrap_or_default()[..] else {
             return Err(format!(
                 "{at} is not a position, expected [longitude, latitude]"

@@ -33,7 +33,7 @@ pub enum PageRequest {
     },
     /// Plays futures of a recording.
     WhatIf {
-        /// What differs. None stops them.
+        /// The question. `None` stops the futures.
         question: Option<Question>,
     },
     /// Controls the whole game.
@@ -86,10 +86,10 @@ pub enum PageRequest {
     },
 }
 
-/// What differs in futures of a recorded game.
+/// A question about futures of a recorded game.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Question {
-    /// The moment from which they differ, simulated s.
+    /// The moment from which the futures differ from the game, simulated s.
     pub at_s: f64,
     /// How many futures to play.
     pub futures: u32,

@@ -267,7 +267,7 @@ async fn upgrade(
     upgrade.on_upgrade(move |socket| socket::serve(socket, game.unwrap_or(app.shown), access, room))
 }
 
-/// A header as a string. A header that is not a string counts as wrong.
+/// A header as a string. A header that is not a string counts as invalid.
 fn text_of<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     headers.get(name).map(|value| value.to_str().unwrap_or("?"))
 }

@@ -23,7 +23,7 @@ pub(super) const TRAIL_S: f64 = 60.0;
 pub trait View: Send + Sync {
     /// Opens a viewer for one page.
     fn open_viewer(&self, access: Access) -> Box<dyn Viewer>;
-    /// Notifies viewers of possible news.
+    /// Notifies viewers of possible changes.
     fn news(&self) -> &Changes;
 }
 
@@ -98,5 +98,5 @@ fn marked(byte: u8, cdr: &[u8]) -> Bytes {
     bytes.into()
 }
 
-/// Notifies viewers of possible news, from any thread.
+/// Notifies viewers of possible changes, from any thread.
 pub type Changes = watch::Sender<()>;

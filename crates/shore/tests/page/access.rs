@@ -115,7 +115,7 @@ fn those_who_only_look_keep_nobody_out_who_may_act() {
     operators[1..]
         .iter_mut()
         .for_each(|operator| seek(operator, 3.0));
-    // One more displaces another.
+    // One more page displaces another.
     let mut another = come();
     seek(&mut another, 3.0);
     assert_eq!(operators[0].close_code(), Some(AGAIN));

@@ -11,7 +11,7 @@ use tungstenite::{Error, Message, WebSocket};
 
 /// Limit of every wait.
 const LIMIT: Duration = Duration::from_secs(30);
-/// Duration of silence that counts as such.
+/// Time without messages that counts as silence.
 const QUIET: Duration = Duration::from_secs(1);
 
 pub(crate) struct Client {

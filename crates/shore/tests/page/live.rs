@@ -1,4 +1,4 @@
-//! A game on a network, shown on pages, with a test sim and over the real network.
+//! A game on the network, shown on pages; with a test sim, over the real network.
 
 use super::client::{Client, get};
 use super::source::{frame, own_boat, report, scenario, seq_of};

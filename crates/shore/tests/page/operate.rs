@@ -20,7 +20,7 @@ const SIMULATED: &str = "blue_two";
 /// The commands that a gateway received.
 type Told = Arc<Watched<Vec<OperatorCommand>>>;
 
-/// A gateway that takes time `takes` to arm, rejects a release, and cannot prove that it knows the
+/// A gateway that takes `takes` to arm, rejects a release, and cannot prove that it knows the
 /// token.
 fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
     let told = Told::default();
@@ -122,7 +122,8 @@ fn arming_needs_the_operators_token_and_disarming_only_the_right_to_stop() {
 #[test]
 fn no_flood_of_commands_delays_a_stop() {
     let (sim, page, mut control) = meet("mixed_2v2.toml");
-    // A separate process has its own link. It takes longer than a reply's timeout.
+    // The gateway has its own link, as in a separate process. Arming takes longer than a reply's
+    // timeout.
     let net = Net {
         connect: vec![format!("tcp/127.0.0.1:{}", sim.port)],
         token: token(),

@@ -76,7 +76,7 @@ fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
         (&told["text"], &told["failed"]),
         (&"there is no game \"<b>\"".into(), &true.into())
     );
-    // Otherwise a page that reconnects for more would do so forever.
+    // The connection stays open: otherwise a page that reconnects to retry would do so forever.
     other.send(r#"{"do":"seek","t_s":3}"#);
     other.until("refused", |_| true);
 }

@@ -5,8 +5,9 @@ use super::parameter::{Knob, PARAMETERS, Parameter};
 use super::problem::Problem;
 use super::rollout::Setting;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use scenario::boat::Boat;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::cell::Cell;
 use thiserror::Error;
 
@@ -19,8 +20,8 @@ pub struct Estimate {
     pub before: f64,
     /// Its fitted value.
     pub value: f64,
-    /// Half-width of the 95 % confidence interval, provided that the model is right and the noise
-    /// white.
+    /// Half-width of the 95 % confidence interval, provided that errors of different segments are
+    /// independent.
     pub plus_minus: f64,
 }
 
@@ -202,6 +203,8 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let variance = residuals.norm_squared() / measured.saturating_sub(fitted).max(1) as f64;
     let covariance = covariance(&jacobian, variance, problem)?;
     let deviation = |i: usize| covariance[(i, i)].sqrt();
+    let by_segment = deviations_by_segment(&jacobian, &residuals, problem);
+    let student = student_975(problem.segments.len() - 1);
     let estimate = |(i, knob): (usize, &Knob)| {
         let value = knob.value(at[i]);
         // The search varies the logarithm, so d value = value d log.
@@ -209,7 +212,7 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
             parameter: knob.parameter,
             before: knob.before,
             value,
-            plus_minus: NORMAL_975 * value * deviation(i),
+            plus_minus: value * f64::max(NORMAL_975 * deviation(i), student * by_segment[i]),
         }
     };
     let mut confused = vec![];
@@ -266,6 +269,44 @@ fn covariance(
     inverse
         .map(|inverse| inverse * variance)
         .ok_or_else(|| NoFit::Undetermined(names()))
+}
+
+/// The standard deviations of the parameters' logarithms by the delete-one jackknife over segments.
+/// White noise gives the same as [`covariance`]; but the errors of a real log last for seconds, and
+/// intervals for white noise then are several times too narrow.
+fn deviations_by_segment(
+    jacobian: &DMatrix<f64>,
+    residuals: &DVector<f64>,
+    problem: &Problem<'_>,
+) -> Vec<f64> {
+    let all = jacobian.tr_mul(jacobian);
+    let mut squares = vec![0.0; jacobian.ncols()];
+    for border in problem.borders.windows(2) {
+        let count = border[1] - border[0];
+        let rows = jacobian.rows(border[0], count);
+        // The change of the fit without this segment, to first order.
+        let others = &all - rows.tr_mul(&rows);
+        let Some(factors) = others.cholesky() else {
+            // Only this segment determines some parameter.
+            return vec![f64::INFINITY; jacobian.ncols()];
+        };
+        let change = factors.solve(&rows.tr_mul(&residuals.rows(border[0], count)));
+        for (square, change) in squares.iter_mut().zip(change.iter()) {
+            *square += change * change;
+        }
+    }
+    let segments = (problem.borders.len() - 1) as f64;
+    let scale = (segments - 1.0) / segments;
+    squares
+        .iter()
+        .map(|square| (scale * square).sqrt())
+        .collect()
+}
+
+/// The 97.5 % quantile of Student's distribution for this many segments; infinite for one.
+fn student_975(segments: usize) -> f64 {
+    let student = StudentsT::new(0.0, 1.0, segments as f64 - 1.0);
+    student.map_or(f64::INFINITY, |student| student.inverse_cdf(0.975))
 }
 
 fn quality(problem: &Problem<'_>, channel: usize) -> Option<Quality> {

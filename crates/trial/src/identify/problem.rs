@@ -34,7 +34,7 @@ pub(super) struct Problem<'a> {
     /// Measured cells: row and channel, by row.
     cells: Vec<(usize, usize)>,
     /// The first cell of each segment, with the end appended.
-    borders: Vec<usize>,
+    pub(super) borders: Vec<usize>,
     /// The fitted channels of a start: the measured ones.
     fitted: Vec<usize>,
     /// The search coordinate.
@@ -168,7 +168,7 @@ impl<'a> Problem<'a> {
         let correction = |border: &[usize]| {
             let columns = by_starts.rows(border[0], border[1] - border[0]);
             let mut normal = columns.tr_mul(&columns);
-            // So small that it matters only for a channel without information.
+            // This is so small that it matters only for a channel without information.
             (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1e-9);
             Some(
                 normal

@@ -19,8 +19,6 @@ use primitives::frame::Ned;
 const DONE: MavResult = MavResult::MAV_RESULT_ACCEPTED;
 const DENIED: MavResult = MavResult::MAV_RESULT_DENIED;
 const FAILED: MavResult = MavResult::MAV_RESULT_FAILED;
-/// MAV_CMD_DO_SEND_BANNER, which is not in the common dialect.
-const DO_SEND_BANNER: u16 = 42_428;
 /// Rover's modes, emulated or not.
 const ROVER_MODES: [u32; 14] = [0, 1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 15, 16];
 /// Minimum change that moves the home of a disarmed boat, m.
@@ -78,14 +76,10 @@ impl ArduPilot {
                 MavResult::MAV_RESULT_UNSUPPORTED
             }
             MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => self.command_arming(param1 == 1.0),
-            MavCmd::MAV_CMD_RUN_PREARM_CHECKS if self.is_armed => {
-                MavResult::MAV_RESULT_TEMPORARILY_REJECTED
-            }
             MavCmd::MAV_CMD_RUN_PREARM_CHECKS => DONE,
             MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL => {
                 self.streams.set_interval(param1 as u32, f64::from(param2))
             }
-            MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL => self.show_interval(param1 as u32),
             MavCmd::MAV_CMD_REQUEST_MESSAGE => result_of(self.send_message(now, param1 as u32)),
             MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES => {
                 result_of(param1 == 1.0 && self.send_message(now, AUTOPILOT_VERSION_DATA::ID))
@@ -109,20 +103,6 @@ impl ArduPilot {
             _ => MavResult::MAV_RESULT_UNSUPPORTED,
         };
         self.acknowledge(from, command.command as u16, result);
-    }
-
-    /// Handles a command that is not in the dialect.
-    pub(super) fn take_unknown_command(&mut self, from: (u8, u8), command: u16) {
-        let result = if command == DO_SEND_BANNER {
-            self.say(
-                MavSeverity::MAV_SEVERITY_INFO,
-                "ArduRover V4.6.3, emulated by Squall",
-            );
-            DONE
-        } else {
-            MavResult::MAV_RESULT_UNSUPPORTED
-        };
-        self.acknowledge(from, command, result);
     }
 
     /// Takes a number, because commands outside the dialect are also acknowledged.
@@ -205,7 +185,7 @@ impl ArduPilot {
             return DENIED;
         }
         let home = if is_here {
-            self.lat_lon_e7()
+            self.sensed.own.map(|own| self.e7(own.nav.at()))
         } else {
             Some(at_e7).filter(|at_e7| command.param1 == 0.0 && self.place(*at_e7).is_some())
         };

@@ -154,6 +154,7 @@ impl MissionStore {
                 mission_type,
             )));
         }
+        let no_item = ack(from, MavMissionResult::MAV_MISSION_ERROR);
         Some(match message {
             MavMessage::MISSION_COUNT(MISSION_COUNT_DATA { count: 0, .. })
             | MavMessage::MISSION_CLEAR_ALL(_) => {
@@ -177,17 +178,14 @@ impl MissionStore {
                     ..MISSION_COUNT_DATA::default()
                 }))
             }
-            MavMessage::MISSION_REQUEST_INT(request) => {
-                Some(match self.item(from, home, request.seq) {
-                    Some(item) => MavMessage::MISSION_ITEM_INT(item),
-                    None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
-                })
-            }
+            MavMessage::MISSION_REQUEST_INT(request) => Some(
+                self.item(from, home, request.seq)
+                    .map_or(no_item, MavMessage::MISSION_ITEM_INT),
+            ),
             MavMessage::MISSION_REQUEST(request) => {
-                Some(match self.item(from, home, request.seq) {
-                    Some(item) => MavMessage::MISSION_ITEM(float_from_int(&item)),
-                    None => ack(from, MavMissionResult::MAV_MISSION_ERROR),
-                })
+                Some(self.item(from, home, request.seq).map_or(no_item, |item| {
+                    MavMessage::MISSION_ITEM(float_from_int(&item))
+                }))
             }
             MavMessage::MISSION_REQUEST_PARTIAL_LIST(_)
             | MavMessage::MISSION_WRITE_PARTIAL_LIST(_) => {

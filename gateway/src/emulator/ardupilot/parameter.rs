@@ -65,16 +65,15 @@ impl Parameters {
                     .ok()
                     .filter(|index| *index < BEGINNING.len());
                 let index = by_index.or_else(|| index_of(read.param_id.to_str().ok()?));
-                let missing = || {
-                    error(
+                match index {
+                    Some(index) => self.message(index, by_index.map_or(BY_NAME, |_| index as u16)),
+                    None => error(
                         from,
                         read.param_id,
                         read.param_index,
                         MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST,
-                    )
-                };
-                let shown = by_index.map_or(BY_NAME, |index| index as u16);
-                index.map_or_else(missing, |index| self.message(index, shown))
+                    ),
+                }
             }
             MavMessage::PARAM_SET(set) => {
                 let refuse = |reason| error(from, set.param_id, -1, reason);

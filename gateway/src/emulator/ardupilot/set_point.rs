@@ -33,52 +33,25 @@ pub(super) enum Course {
     Turn(f64),
 }
 
-/// The contents of a message, without the ignored fields.
+/// The bits of `type_mask` with which a set-point ignores position, velocity, acceleration, yaw and
+/// rate of turn; those of z do not matter to a boat.
+const POSITION: u16 = 0b11;
+const VELOCITY: u16 = 0b1_1000;
+const ACCELERATION: u16 = 0b1100_0000;
+const YAW: u16 = 0b100_0000_0000;
+const YAW_RATE: u16 = 0b1000_0000_0000;
+
+/// The contents of a message.
 struct Target {
+    mask: PositionTargetTypemask,
+    /// The position, if valid.
     place: Option<Ned>,
     /// Velocity along the axes of its frame, m/s.
-    velocity: Option<(f64, f64)>,
-    /// Yaw in its frame, rad.
-    yaw_rad: Option<f64>,
-    yaw_rate_rad_s: Option<f64>,
-    has_acceleration: bool,
+    velocity: [f32; 2],
+    /// Yaw in its frame, rad, and rate of turn, rad/s.
+    yaw: [f32; 2],
     /// The true heading of the first axis of the frame, rad.
     frame_rad: f64,
-}
-
-impl Target {
-    fn new(
-        mask: PositionTargetTypemask,
-        frame_rad: f64,
-        place: Ned,
-        velocity: [f32; 2],
-        yaw: [f32; 2],
-    ) -> Target {
-        use PositionTargetTypemask as Mask;
-        let has = |one: Mask, other: Mask| !mask.intersects(one | other);
-        let [x_m_s, y_m_s] = velocity.map(f64::from);
-        let [yaw_rad, yaw_rate_rad_s] = yaw.map(f64::from);
-        let has_place = has(
-            Mask::POSITION_TARGET_TYPEMASK_X_IGNORE,
-            Mask::POSITION_TARGET_TYPEMASK_Y_IGNORE,
-        );
-        let has_velocity = has(
-            Mask::POSITION_TARGET_TYPEMASK_VX_IGNORE,
-            Mask::POSITION_TARGET_TYPEMASK_VY_IGNORE,
-        );
-        Target {
-            place: has_place.then_some(place),
-            velocity: has_velocity.then_some((x_m_s, y_m_s)),
-            yaw_rad: (!mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_IGNORE)).then_some(yaw_rad),
-            yaw_rate_rad_s: (!mask.contains(Mask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE))
-                .then_some(yaw_rate_rad_s),
-            has_acceleration: has(
-                Mask::POSITION_TARGET_TYPEMASK_AX_IGNORE,
-                Mask::POSITION_TARGET_TYPEMASK_AY_IGNORE,
-            ),
-            frame_rad,
-        }
-    }
 }
 
 /// Whether positions in a frame are given as latitude and longitude.
@@ -136,17 +109,17 @@ impl SetPoints {
             return Err("set-point ignored: it has no throttle");
         }
         let speed_m_s = f64::from(target.thrust).clamp(-1.0, 1.0) * speed_max_m_s;
-        if mask.contains(AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE) {
+        let no_rate = AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_YAW_RATE_IGNORE;
+        let course = if mask.contains(no_rate) {
             let [w, x, y, z] = target.q.map(f64::from);
-            let heading_rad = math::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-            self.set(now, Course::Heading(heading_rad), speed_m_s)
+            Course::Heading(math::atan2(
+                2.0 * (w * z + x * y),
+                1.0 - 2.0 * (y * y + z * z),
+            ))
         } else {
-            self.set(
-                now,
-                Course::Turn(f64::from(target.body_yaw_rate)),
-                speed_m_s,
-            )
-        }
+            Course::Turn(f64::from(target.body_yaw_rate))
+        };
+        self.set(now, course, speed_m_s)
     }
 
     /// Sets a position relative to the origin or the boat, or a velocity. The boat's own heading
@@ -180,18 +153,14 @@ impl SetPoints {
             }
             _ => return Err("set-point ignored: unsupported frame"),
         };
-        let velocity = [target.vx, target.vy];
-        self.follow(
-            now,
-            &Target::new(
-                target.type_mask,
-                frame_rad,
-                place,
-                velocity,
-                [target.yaw, target.yaw_rate],
-            ),
-            speed_max_m_s,
-        )
+        let target = Target {
+            mask: target.type_mask,
+            place: Some(place),
+            velocity: [target.vx, target.vy],
+            yaw: [target.yaw, target.yaw_rate],
+            frame_rad,
+        };
+        self.follow(now, &target, speed_max_m_s)
     }
 
     /// Sets a position on the globe, `place`, or a velocity.
@@ -208,19 +177,14 @@ impl SetPoints {
         if !is_global(target.coordinate_frame) {
             return Err("set-point ignored: unsupported frame");
         }
-        let velocity = [target.vx, target.vy];
-        let yaw = [target.yaw, target.yaw_rate];
-        let asked = Target::new(
-            target.type_mask,
-            0.0,
-            place.unwrap_or(Ned {
-                north: f64::NAN,
-                east: f64::NAN,
-            }),
-            velocity,
-            yaw,
-        );
-        self.follow(now, &asked, speed_max_m_s)
+        let target = Target {
+            mask: target.type_mask,
+            place,
+            velocity: [target.vx, target.vy],
+            yaw: [target.yaw, target.yaw_rate],
+            frame_rad: 0.0,
+        };
+        self.follow(now, &target, speed_max_m_s)
     }
 
     /// Sets a position, or a speed with the heading of the velocity, a different heading, or a rate
@@ -232,32 +196,35 @@ impl SetPoints {
         target: &Target,
         speed_max_m_s: f64,
     ) -> Result<(), &'static str> {
-        if let Some(place) = target.place {
-            return if self.go_to(place) {
-                Ok(())
-            } else {
-                Err("set-point ignored: invalid position")
-            };
+        let has = |bits: u16| target.mask.bits() & bits == 0;
+        if has(POSITION) {
+            let is_taken = target.place.is_some_and(|place| self.go_to(place));
+            return is_taken
+                .then_some(())
+                .ok_or("set-point ignored: invalid position");
         }
-        if target.has_acceleration {
+        if has(ACCELERATION) {
             return Err("set-point ignored: set ACC_IGNORE in mask");
         }
-        let (x_m_s, y_m_s) = target.velocity.unwrap_or((0.0, 0.0));
-        let course = match (target.yaw_rad, target.yaw_rate_rad_s) {
+        let [x_m_s, y_m_s] = target
+            .velocity
+            .map(|v| if has(VELOCITY) { v.into() } else { 0.0 });
+        let [yaw_rad, rate_rad_s] = target.yaw.map(f64::from);
+        let course = match (has(YAW), has(YAW_RATE)) {
             // Rover accepts only one of them, and ignores a message with both.
-            (Some(_), Some(_)) => return Err("set-point ignored: yaw and yaw rate"),
-            (Some(yaw_rad), None) => Course::Heading(yaw_rad + target.frame_rad),
-            (None, Some(rate_rad_s)) => Course::Turn(rate_rad_s),
-            (None, None) if target.velocity.is_none() => {
+            (true, true) => return Err("set-point ignored: yaw and yaw rate"),
+            (true, false) => Course::Heading(yaw_rad + target.frame_rad),
+            (false, true) => Course::Turn(rate_rad_s),
+            (false, false) if !has(VELOCITY) => {
                 return Err("set-point ignored: mask without a target");
             }
-            (None, None) => Course::Heading(math::atan2(y_m_s, x_m_s) + target.frame_rad),
+            (false, false) => Course::Heading(math::atan2(y_m_s, x_m_s) + target.frame_rad),
         };
         // The speed takes the sign of x, even in frames where x points north. This bug in
         // Rover/GCS_MAVLink_Rover.cpp sent boats astern on southward headings. It is imitated so
         // that our closed-loop tests detect a yaw sent with a velocity.
-        let has_yaw = target.yaw_rad.is_some() || target.yaw_rate_rad_s.is_some();
-        let sign = if has_yaw && x_m_s < 0.0 { -1.0 } else { 1.0 };
+        let is_astern = (has(YAW) || has(YAW_RATE)) && x_m_s < 0.0;
+        let sign = if is_astern { -1.0 } else { 1.0 };
         self.set(
             now,
             course,
@@ -276,11 +243,9 @@ impl SetPoints {
     /// Sets the speed (m/s) on the way to a position; returns whether there is a position.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
         let is_taken = self.destination.is_some() && speed_m_s >= SPEED_MIN_M_S;
-        self.speed_m_s = if is_taken {
-            Some(speed_m_s)
-        } else {
-            self.speed_m_s
-        };
+        if is_taken {
+            self.speed_m_s = Some(speed_m_s);
+        }
         is_taken
     }
 
@@ -294,8 +259,7 @@ impl SetPoints {
     pub(super) fn nav_bearing(&self, now: SimTime) -> i16 {
         match self.guided {
             Some((at, Course::Heading(heading_rad), _)) if (now - at).as_s() <= HELD_S => {
-                // Rover 4.7 shows whole degrees, truncated rather than rounded; earlier versions
-                // show 0.
+                // Truncated, not rounded.
                 wrap_pi(heading_rad).to_degrees() as i16
             }
             _ => 0,
@@ -322,16 +286,11 @@ impl SetPoints {
     /// RC override: steering is channel 1, throttle channel 3, 1000 to 2000 µs with rest at 1500; 0
     /// means no override.
     pub(super) fn take_channels(&mut self, now: SimTime, channels: &RC_CHANNELS_OVERRIDE_DATA) {
-        let share = |us: u16| {
-            if us == 0 || us == u16::MAX {
-                0.0
-            } else {
-                0.002 * (f64::from(us) - 1500.0)
-            }
-        };
-        let throttle = share(channels.chan3_raw);
-        let steering = share(channels.chan1_raw);
-        self.manual = Some((now, throttle.clamp(-1.0, 1.0), steering.clamp(-1.0, 1.0)));
+        let [steering, throttle] = [channels.chan1_raw, channels.chan3_raw].map(|us| match us {
+            0 | u16::MAX => 0.0,
+            us => (0.002 * (f64::from(us) - 1500.0)).clamp(-1.0, 1.0),
+        });
+        self.manual = Some((now, throttle, steering));
     }
 
     pub(super) fn manual(&self, now: SimTime) -> Order {

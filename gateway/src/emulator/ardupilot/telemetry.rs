@@ -9,12 +9,11 @@ use super::ArduPilot;
 use crate::mavlink::RoverMode;
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA,
-    GPS_GLOBAL_ORIGIN_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA, HOME_POSITION_DATA,
-    LOCAL_POSITION_NED_DATA, MESSAGE_INTERVAL_DATA, MISSION_CURRENT_DATA, MavAutopilot,
-    MavBatteryFault, MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability, MavResult,
-    MavState, MavSysStatusSensor, MavSysStatusSensorExtended, MavType, NAV_CONTROLLER_OUTPUT_DATA,
-    POSITION_TARGET_GLOBAL_INT_DATA, PositionTargetTypemask, REQUEST_DATA_STREAM_DATA,
-    SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
+    GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA,
+    MISSION_CURRENT_DATA, MavAutopilot, MavBatteryFault, MavMessage, MavModeFlag,
+    MavProtocolCapability, MavResult, MavState, MavSysStatusSensor, MavSysStatusSensorExtended,
+    MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA, PositionTargetTypemask,
+    REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
 use primitives::SimTime;
@@ -36,46 +35,25 @@ const EKF_EXTRA_CRC: u8 = 71;
 const EKF_WELL: u16 = 831;
 const EKF_WITHOUT_FIX: u16 = 165;
 
-/// The messages of each stream, sent once a second by default.
-const STREAMS: [(MavDataStream, &[u32]); 6] = [
-    (MavDataStream::MAV_DATA_STREAM_ALL, &[HEARTBEAT_DATA::ID]),
-    (
-        MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
-        &[
-            SYS_STATUS_DATA::ID,
-            GPS_RAW_INT_DATA::ID,
-            NAV_CONTROLLER_OUTPUT_DATA::ID,
-            POSITION_TARGET_GLOBAL_INT_DATA::ID,
-            MISSION_CURRENT_DATA::ID,
-        ],
-    ),
-    (
-        MavDataStream::MAV_DATA_STREAM_POSITION,
-        &[GLOBAL_POSITION_INT_DATA::ID, LOCAL_POSITION_NED_DATA::ID],
-    ),
-    (MavDataStream::MAV_DATA_STREAM_EXTRA1, &[ATTITUDE_DATA::ID]),
-    (MavDataStream::MAV_DATA_STREAM_EXTRA2, &[VFR_HUD_DATA::ID]),
-    (
-        MavDataStream::MAV_DATA_STREAM_EXTRA3,
-        &[
-            SYSTEM_TIME_DATA::ID,
-            BATTERY_STATUS_DATA::ID,
-            EKF_STATUS_REPORT,
-        ],
-    ),
+/// The messages sent once a second by default.
+const STREAMED: [u32; 13] = [
+    HEARTBEAT_DATA::ID,
+    SYS_STATUS_DATA::ID,
+    GPS_RAW_INT_DATA::ID,
+    NAV_CONTROLLER_OUTPUT_DATA::ID,
+    POSITION_TARGET_GLOBAL_INT_DATA::ID,
+    MISSION_CURRENT_DATA::ID,
+    GLOBAL_POSITION_INT_DATA::ID,
+    LOCAL_POSITION_NED_DATA::ID,
+    ATTITUDE_DATA::ID,
+    VFR_HUD_DATA::ID,
+    SYSTEM_TIME_DATA::ID,
+    BATTERY_STATUS_DATA::ID,
+    EKF_STATUS_REPORT,
 ];
 const INTERVAL_S: f64 = 1.0;
 /// The messages sent only on request.
-const ON_REQUEST: [u32; 3] = [
-    HOME_POSITION_DATA::ID,
-    GPS_GLOBAL_ORIGIN_DATA::ID,
-    AUTOPILOT_VERSION_DATA::ID,
-];
-
-/// The messages of all streams.
-fn streamed() -> impl Iterator<Item = u32> {
-    STREAMS.iter().flat_map(|(_, ids)| *ids).copied()
-}
+const ON_REQUEST: [u32; 2] = [HOME_POSITION_DATA::ID, AUTOPILOT_VERSION_DATA::ID];
 
 /// The interval of each message, s, and when it is due.
 #[derive(Clone, Debug)]
@@ -86,9 +64,7 @@ pub(super) struct Streams {
 impl Streams {
     pub(super) fn new() -> Streams {
         Streams {
-            regular: streamed()
-                .map(|id| (id, (INTERVAL_S, SimTime::ZERO)))
-                .collect(),
+            regular: STREAMED.map(|id| (id, (INTERVAL_S, SimTime::ZERO))).into(),
         }
     }
 
@@ -105,77 +81,41 @@ impl Streams {
         due
     }
 
-    /// Sets the interval of a message, µs; -1 means never, 0 means the default.
-    // Zero requests the default rate, and a negative interval stops the message
-    // (MAV_CMD_SET_MESSAGE_INTERVAL).
+    /// Sets the interval of a message, µs; -1 means never, 0 means the default
+    /// (MAV_CMD_SET_MESSAGE_INTERVAL).
     pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> MavResult {
-        let is_streamed = streamed().any(|known| known == id);
+        let is_streamed = STREAMED.contains(&id);
         let is_too_fast = interval_us > 0.0 && interval_us < 1e6 * INTERVAL_MIN_S;
         if !is_streamed && !ON_REQUEST.contains(&id) || interval_us < -1.0 || is_too_fast {
             return MavResult::MAV_RESULT_DENIED;
         }
-        let every_s = if interval_us > 0.0 {
-            Some(1e-6 * interval_us)
+        let due = self.regular.get(&id).map_or(SimTime::ZERO, |(_, at)| *at);
+        if interval_us > 0.0 {
+            self.regular.insert(id, (1e-6 * interval_us, due));
+        } else if is_streamed && interval_us == 0.0 {
+            self.regular.insert(id, (INTERVAL_S, due));
         } else {
-            (is_streamed && interval_us == 0.0).then_some(INTERVAL_S)
-        };
-        self.set(id, every_s);
+            self.regular.remove(&id);
+        }
         MavResult::MAV_RESULT_ACCEPTED
     }
 
-    /// The interval of a message, µs: -1 means never; 0 means that the message is unsupported.
-    fn interval_us(&self, id: u32) -> i32 {
-        let is_known = streamed().chain(ON_REQUEST).any(|known| known == id);
-        let never = if is_known { -1 } else { 0 };
-        self.regular
-            .get(&id)
-            .map_or(never, |(every_s, _)| (1e6 * every_s).round() as i32)
-    }
-
-    /// Sets the rate of one stream, or of all.
+    /// Speeds up all messages but the heartbeat to the rate of any stream.
+    // Never slows them down: the gateway depends on the intervals that it has set.
     pub(super) fn take_request(&mut self, request: &REQUEST_DATA_STREAM_DATA) {
-        let every_s = (request.start_stop == 1 && request.req_message_rate > 0)
-            .then(|| 1.0 / f64::from(request.req_message_rate));
-        let is_all = request.req_stream_id == MavDataStream::MAV_DATA_STREAM_ALL;
-        let asked = STREAMS
-            .iter()
-            .filter(|(stream, _)| is_all || *stream == request.req_stream_id);
-        // The heartbeat always continues.
-        for id in asked
-            .flat_map(|(_, ids)| *ids)
-            .filter(|id| **id != HEARTBEAT_DATA::ID)
-        {
-            self.set(*id, every_s);
+        if request.start_stop != 1 || request.req_message_rate == 0 {
+            return;
         }
-    }
-
-    fn set(&mut self, id: u32, every_s: Option<f64>) {
-        match every_s {
-            Some(every_s) => {
-                let due = self.regular.get(&id).map_or(SimTime::ZERO, |(_, at)| *at);
-                self.regular.insert(id, (every_s.max(INTERVAL_MIN_S), due));
+        let every_s = (1.0 / f64::from(request.req_message_rate)).max(INTERVAL_MIN_S);
+        for (id, (interval_s, _)) in &mut self.regular {
+            if *id != HEARTBEAT_DATA::ID {
+                *interval_s = interval_s.min(every_s);
             }
-            None => drop(self.regular.remove(&id)),
         }
     }
 }
 
 impl ArduPilot {
-    /// Reports the interval of a message.
-    pub(super) fn show_interval(&mut self, id: u32) -> MavResult {
-        let interval_us = self.streams.interval_us(id);
-        let shown = MESSAGE_INTERVAL_DATA {
-            interval_us,
-            message_id: id as u16,
-        };
-        self.send(&MavMessage::MESSAGE_INTERVAL(shown));
-        if interval_us == 0 {
-            MavResult::MAV_RESULT_FAILED
-        } else {
-            MavResult::MAV_RESULT_ACCEPTED
-        }
-    }
-
     /// Sends a message with current data; returns whether there were any.
     pub(super) fn send_message(&mut self, now: SimTime, id: u32) -> bool {
         if id == EKF_STATUS_REPORT {
@@ -199,9 +139,6 @@ impl ArduPilot {
         Some(match id {
             HEARTBEAT_DATA::ID => MavMessage::HEARTBEAT(self.heartbeat()),
             SYS_STATUS_DATA::ID => MavMessage::SYS_STATUS(self.sys_status()),
-            GPS_RAW_INT_DATA::ID => MavMessage::GPS_RAW_INT(self.gps_raw(now)?),
-            GLOBAL_POSITION_INT_DATA::ID => MavMessage::GLOBAL_POSITION_INT(self.position(now)?),
-            ATTITUDE_DATA::ID => MavMessage::ATTITUDE(self.attitude(now)?),
             NAV_CONTROLLER_OUTPUT_DATA::ID if self.mode == RoverMode::Guided => {
                 MavMessage::NAV_CONTROLLER_OUTPUT(NAV_CONTROLLER_OUTPUT_DATA {
                     nav_bearing: self.set_points.nav_bearing(now),
@@ -220,11 +157,6 @@ impl ArduPilot {
                 })
             }
             MISSION_CURRENT_DATA::ID => self.mission.current(self.autopilot.next),
-            LOCAL_POSITION_NED_DATA::ID => {
-                MavMessage::LOCAL_POSITION_NED(self.local_position(now)?)
-            }
-            GPS_GLOBAL_ORIGIN_DATA::ID if self.origin.is_some() => self.origin_message(),
-            VFR_HUD_DATA::ID => MavMessage::VFR_HUD(self.vfr_hud()?),
             SYSTEM_TIME_DATA::ID => MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
                 time_unix_usec: self.utc_us(now),
                 time_boot_ms: boot_ms(now),
@@ -237,6 +169,71 @@ impl ArduPilot {
                 ..HOME_POSITION_DATA::default()
             }),
             AUTOPILOT_VERSION_DATA::ID => MavMessage::AUTOPILOT_VERSION(version()),
+            _ => return self.motion(now, id),
+        })
+    }
+
+    /// The message with the measured position and motion.
+    fn motion(&self, now: SimTime, id: u32) -> Option<MavMessage> {
+        let nav = self.sensed.own?.nav;
+        let (at, velocity) = (nav.at(), nav.velocity_m_s());
+        let (lat, lon) = self.e7(at);
+        let has_fix = self.sensed.has_fix(now);
+        // Below 36000, which is not a valid angle.
+        let centidegrees = |rad| ((100.0 * compass_deg_from_rad(rad)) as u16).min(35_999);
+        let time_boot_ms = boot_ms(now);
+        Some(match id {
+            GPS_RAW_INT_DATA::ID => MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA {
+                time_usec: self.utc_us(now),
+                lat,
+                lon,
+                alt: 5500,
+                eph: if has_fix { 98 } else { u16::MAX },
+                epv: if has_fix { 150 } else { u16::MAX },
+                vel: (100.0 * velocity.length()) as u16,
+                cog: centidegrees(velocity.direction_rad()),
+                fix_type: if has_fix {
+                    GpsFixType::GPS_FIX_TYPE_DGPS
+                } else {
+                    GpsFixType::GPS_FIX_TYPE_NO_FIX
+                },
+                satellites_visible: if has_fix { 11 } else { 0 },
+                ..GPS_RAW_INT_DATA::default()
+            }),
+            GLOBAL_POSITION_INT_DATA::ID => {
+                MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
+                    time_boot_ms,
+                    lat,
+                    lon,
+                    alt: 5500,
+                    vx: (100.0 * velocity.north).round() as i16,
+                    vy: (100.0 * velocity.east).round() as i16,
+                    hdg: centidegrees(nav.psi_rad),
+                    ..GLOBAL_POSITION_INT_DATA::default()
+                })
+            }
+            ATTITUDE_DATA::ID => MavMessage::ATTITUDE(ATTITUDE_DATA {
+                time_boot_ms,
+                yaw: primitives::angle::wrap_pi(nav.psi_rad) as f32,
+                yawspeed: nav.yaw_rate_rad_s as f32,
+                ..ATTITUDE_DATA::default()
+            }),
+            LOCAL_POSITION_NED_DATA::ID => {
+                let origin = self.origin?;
+                MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
+                    time_boot_ms,
+                    x: (at.north - origin.north) as f32,
+                    y: (at.east - origin.east) as f32,
+                    vx: velocity.north as f32,
+                    vy: velocity.east as f32,
+                    ..LOCAL_POSITION_NED_DATA::default()
+                })
+            }
+            VFR_HUD_DATA::ID => MavMessage::VFR_HUD(VFR_HUD_DATA {
+                groundspeed: velocity.length() as f32,
+                heading: compass_deg_from_rad(nav.psi_rad) as i16,
+                ..VFR_HUD_DATA::default()
+            }),
             _ => return None,
         })
     }
@@ -321,105 +318,13 @@ impl ArduPilot {
         }
     }
 
-    fn gps_raw(&self, now: SimTime) -> Option<GPS_RAW_INT_DATA> {
-        let (lat, lon) = self.lat_lon_e7()?;
-        let nav = self.sensed.own?.nav;
-        let has_fix = self.sensed.has_fix(now);
-        let velocity = nav.velocity_m_s();
-        let course_deg = compass_deg_from_rad(velocity.direction_rad());
-        Some(GPS_RAW_INT_DATA {
-            time_usec: self.utc_us(now),
-            lat,
-            lon,
-            alt: 5500,
-            eph: if has_fix { 98 } else { u16::MAX },
-            epv: if has_fix { 150 } else { u16::MAX },
-            vel: (100.0 * velocity.length()) as u16,
-            cog: ((100.0 * course_deg) as u16).min(35_999),
-            fix_type: if has_fix {
-                GpsFixType::GPS_FIX_TYPE_DGPS
-            } else {
-                GpsFixType::GPS_FIX_TYPE_NO_FIX
-            },
-            satellites_visible: if has_fix { 11 } else { 0 },
-            ..GPS_RAW_INT_DATA::default()
-        })
-    }
-
-    pub(super) fn lat_lon_e7(&self) -> Option<(i32, i32)> {
-        Some(self.e7(self.sensed.own?.nav.at()))
-    }
-
     /// The destination in GUIDED, or the point where the boat keeps station without a set-point.
     fn position_target(&self) -> Option<Ned> {
-        let destination = self.set_points.destination().map(|(place, _)| place);
-        destination.or_else(|| {
-            self.autopilot
-                .station
-                .filter(|_| self.set_points.guided.is_none())
-        })
-    }
-
-    /// The origin of positions in the frame LOCAL_NED.
-    pub(super) fn origin_message(&self) -> MavMessage {
-        let (latitude, longitude) = self.e7(self.origin.unwrap_or_default());
-        MavMessage::GPS_GLOBAL_ORIGIN(GPS_GLOBAL_ORIGIN_DATA {
-            latitude,
-            longitude,
-            ..Default::default()
-        })
-    }
-
-    fn local_position(&self, now: SimTime) -> Option<LOCAL_POSITION_NED_DATA> {
-        let nav = self.sensed.own?.nav;
-        let origin = self.origin?;
-        let at = nav.at();
-        let velocity = nav.velocity_m_s();
-        Some(LOCAL_POSITION_NED_DATA {
-            time_boot_ms: boot_ms(now),
-            x: (at.north - origin.north) as f32,
-            y: (at.east - origin.east) as f32,
-            vx: velocity.north as f32,
-            vy: velocity.east as f32,
-            ..LOCAL_POSITION_NED_DATA::default()
-        })
-    }
-
-    fn position(&self, now: SimTime) -> Option<GLOBAL_POSITION_INT_DATA> {
-        let (lat, lon) = self.lat_lon_e7()?;
-        let nav = self.sensed.own?.nav;
-        let velocity = nav.velocity_m_s();
-        Some(GLOBAL_POSITION_INT_DATA {
-            time_boot_ms: boot_ms(now),
-            lat,
-            lon,
-            alt: 5500,
-            relative_alt: 0,
-            vx: (100.0 * velocity.north).round() as i16,
-            vy: (100.0 * velocity.east).round() as i16,
-            vz: 0,
-            // Kept below 36000, which is not a valid heading.
-            hdg: ((100.0 * compass_deg_from_rad(nav.psi_rad)) as u16).min(35_999),
-        })
-    }
-
-    fn attitude(&self, now: SimTime) -> Option<ATTITUDE_DATA> {
-        let nav = self.sensed.own?.nav;
-        Some(ATTITUDE_DATA {
-            time_boot_ms: boot_ms(now),
-            yaw: primitives::angle::wrap_pi(nav.psi_rad) as f32,
-            yawspeed: nav.yaw_rate_rad_s as f32,
-            ..ATTITUDE_DATA::default()
-        })
-    }
-
-    fn vfr_hud(&self) -> Option<VFR_HUD_DATA> {
-        let nav = self.sensed.own?.nav;
-        Some(VFR_HUD_DATA {
-            groundspeed: nav.velocity_m_s().length() as f32,
-            heading: compass_deg_from_rad(nav.psi_rad) as i16,
-            ..VFR_HUD_DATA::default()
-        })
+        match self.set_points.destination() {
+            Some((place, _)) => Some(place),
+            None if self.set_points.guided.is_none() => self.autopilot.station,
+            None => None,
+        }
     }
 }
 

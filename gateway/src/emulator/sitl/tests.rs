@@ -208,7 +208,7 @@ fn the_real_firmware_gets_the_replies_that_it_accepted() {
                 let outputs = Outputs::parse(&bytes(rest)).expect("servo outputs");
                 assert!(step.is_none_or(|before| outputs.step == before + 1));
                 step = Some(outputs.step);
-                // Restarts, as a first datagram, would set the clock to zero.
+                // As a first datagram, this would count as a restart and set the clock to zero.
                 sitl.outputs = Some((outputs, SimTime::ZERO));
                 sitl.receive(&bytes(rest));
             }
@@ -267,7 +267,7 @@ fn servo_outputs_become_thrust_until_they_stop() {
             starboard: 1.0
         }
     );
-    // A firmware that waits for a reply is not silent, however long the game is paused.
+    // Firmware that is waiting for a reply is not silent, however long the game is paused.
     let truth = VehicleTruth::default();
     sitl.observe(SimTime::from_s(0.0), &truth);
     sitl.observe(SimTime::from_s(5.0), &truth);

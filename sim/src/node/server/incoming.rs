@@ -25,8 +25,8 @@ const ANSWERS_MAX: usize = 4;
 impl GameServer<'_> {
     /// Handles incoming messages, commands first. Waits up to `limit` for the first one.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
-        // Before and after waiting: the remaining time is the sim's own work. If that exceeds a
-        // second, the sim was suspended.
+        // Called before and after waiting, so that the remaining time is the sim's own work. If
+        // that exceeds a second, the sim was suspended.
         self.time.pass(clock::now(), Duration::ZERO);
         let mut next = self.inbox.next_within(limit);
         self.time.pass(clock::now(), limit);
@@ -34,7 +34,8 @@ impl GameServer<'_> {
         self.answer();
         // Messages may arrive faster than they are read: the game must continue.
         for _ in 0..MESSAGES_MAX {
-            // Before each message, so that a flood delays an E-stop by at most one message.
+            // Execute commands before each message, so that a flood delays an E-stop by at most one
+            // message.
             self.obey();
             let Some(incoming) = next else { return };
             self.take_in(incoming);
@@ -92,8 +93,8 @@ impl GameServer<'_> {
                 }
             }
             Incoming::Gone(node) => {
-                // A gateway reconnects with the same boat at once, and nothing waits for it, so no
-                // waiting time is needed.
+                // A gateway rejoins for the same boat at once, and nothing waits for it, so no
+                // grace period is needed.
                 self.gateways.gone(&node);
                 // Links may have timed out while the sim was suspended; the time limit then decides
                 // whether agents return.
@@ -120,7 +121,7 @@ impl GameServer<'_> {
             self.refusals
                 .add(Refusal::BadNumber, u64::from(taken.is_err()));
             self.heard[vehicle.index()] = self.time.worked;
-            // At once, not with the next pictures, which may be a decision later.
+            // Pass the order on at once, not with the next pictures, which may be a decision later.
             self.pass_on_now(vehicle);
         }
     }
@@ -178,7 +179,7 @@ impl GameServer<'_> {
         if !what.is_about(&message, vehicle, &name) {
             return self.refusals.count(Refusal::Garbage);
         }
-        // If the session has closed, the next picture detects it.
+        // If the session has closed, sending the next picture returns the error.
         let passed_on = match (what, self.reports.get(&(vehicle, what))) {
             (_, None) => Ok(()),
             (Reported::Status, Some(publisher)) => publisher.send_json(message.clone()),
@@ -216,7 +217,7 @@ impl GameServer<'_> {
                 reason: format!("cannot parse the request: {e}"),
             },
         };
-        // Before the node can send its ticket.
+        // Accept the ticket before the node can send it.
         self.inbox.accept_tickets(
             self.agents
                 .tickets()
@@ -282,8 +283,7 @@ impl GameServer<'_> {
     fn reset(&mut self, seed: u64) -> ControlReply {
         if self.recorder.is_some() || !self.external_orders.is_empty() {
             return Err(
-                "a game with a recording or real boats cannot be reset: start another one"
-                    .to_owned(),
+                "a game with a recording or real boats cannot be reset: start a new one".to_owned(),
             );
         }
         let next = self.contest.restarted(self.scenario, seed);
@@ -298,7 +298,7 @@ impl GameServer<'_> {
             Control::EStop => self.contest.e_stop(true),
             Control::Release => {
                 self.contest.e_stop(false);
-                // If the session has closed, the next picture detects it.
+                // If the session has closed, sending the next picture returns the error.
                 drop(self.released.send_json(b"true".to_vec()));
             }
             Control::Reset(seed) => reply = self.reset(seed),

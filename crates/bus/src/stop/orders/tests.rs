@@ -122,7 +122,7 @@ fn a_status_that_a_lost_packet_held_up_shows_no_later_stop() {
 fn what_is_told_again_counts_only_for_a_boat_that_is_not_heard_itself() {
     let (mut orders, start) = orders(&["blue_one"]);
     orders.ask(start, Some("blue_one".to_owned()), StopCommand::Disarm);
-    // The sim received it before the stop was requested.
+    // The sim received this state before the stop was requested.
     orders.report(
         start + MS(40),
         "blue_one",

@@ -31,7 +31,7 @@ fn assert_slopes<L: Clone>(
     gradient_and_loss: impl Fn(&L) -> (Vec<f32>, f32),
 ) {
     const STEP: f32 = 1e-2;
-    // For slopes of about 0.1 by finite differences in single precision.
+    // Suits slopes of about 0.1, from finite differences in single precision.
     const TOLERANCE: f32 = 1e-3;
     let (gradient, _) = gradient_and_loss(learner);
     assert!(

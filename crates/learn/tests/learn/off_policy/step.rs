@@ -8,7 +8,7 @@ use learn::off_policy::td3::{NUMBERS, Numbers, Td3Learner};
 use learn::training::{Dqn, Td3};
 
 const ROWS: usize = 300;
-/// For values of about 1 in single precision, changed by two steps of 0.001.
+/// Suits values of about 1 in single precision, changed by two steps of 0.001.
 const TOLERANCE: f64 = 1e-5;
 
 /// The same as `numbers` in `reference.py`.

@@ -92,8 +92,8 @@ fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
         }
         assert!(place.abs() < 0.1, "from {start} to {place}");
     }
-    // No further cost arises in the middle. At the end of the line, one step's cost and the costs
-    // of those that follow arise.
+    // In the middle, there are no further costs. At the end of the line, the costs are those of one
+    // step and of the steps that follow.
     let value = |place: f32| {
         let mut trace = Trace::default();
         learner.critics[0].forward(&[place, (-place / 0.3).clamp(-1.0, 1.0), 0.5], &mut trace);

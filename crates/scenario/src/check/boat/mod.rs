@@ -12,8 +12,8 @@ use crate::read::Document;
 use crate::sensor::{Gps, MOST_PERIODS_LATE};
 use kinematic::check_kinematic;
 
-/// Physics steps are explicit: a motion with a higher decay rate per tick would grow instead. (The
-/// limit of fourth-order Runge-Kutta is 2.78; the rest is margin.)
+/// Maximum decay rate per tick: the integration is explicit, so a faster decay would grow instead.
+/// (The stability limit of fourth-order Runge-Kutta is 2.78; the rest is margin.)
 pub(super) const FASTEST_PER_TICK: f64 = 2.0;
 /// The tick for checking a boat file without a game, s.
 const USUAL_TICK_S: f64 = 0.05;
@@ -64,7 +64,7 @@ fn drive(document: &Document<raw::Boat>) -> Option<Drive> {
     let raw = &document.raw;
     if let Some(kinematic) = &raw.kinematic {
         if document.has("thruster") || document.has("autopilot") {
-            let message = "kinematic is given with thruster or autopilot, expected either";
+            let message = "kinematic is given with thruster or autopilot, expected only one";
             document.note("kinematic", message);
         }
         check_kinematic(document, kinematic);

@@ -1,5 +1,5 @@
-//! Checks behaviours: resolves names and expressions; values already satisfy the declarations of
-//! their types.
+//! Checks behaviours: resolves names and expressions. The schema has already checked the other
+//! values.
 
 use super::scope::Scope;
 use super::variable::set;
@@ -104,7 +104,7 @@ fn one(scope: &Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> O
     })
 }
 
-/// The keys of a table with their checked values; faults are reported and omitted.
+/// A table with its values checked; faulty ones are reported and left out.
 fn checked_table(
     scope: &Scope<'_>,
     path: &str,
@@ -210,7 +210,7 @@ fn sets(scope: &Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<O
 fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
     let has_options = model.spec.action == ActionSpace::Options;
     let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
-        let why = "it chooses among options, expected `sets` with the variable that receives them";
+        let why = "it chooses among options, expected `sets` with a variable for its choice";
         return has_options.then(|| why.to_owned());
     };
     let VariableKind::Text(texts) = &variable.kind else {
@@ -276,7 +276,7 @@ fn host(
     }
     let found = scope.document.resolve(&format!("{path}.host"), &host);
     let files = &scope.document.loader.files;
-    // Stored files come from a different process, whose paths this one must not run.
+    // Stored files come from a different process: never run programs at paths that they contain.
     let is_allowed = !files.is_stored();
     if is_allowed && !found.join("solution.py").is_file() && !found.is_file() {
         let expected = "expected a folder with solution.py, or that file";

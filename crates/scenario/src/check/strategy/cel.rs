@@ -42,8 +42,8 @@ pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str)
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {
-            // The parser reports the places of parts only for invalid syntax, which a surplus
-            // bracket causes.
+            // The parser reports the places of parts only if the syntax is invalid, so add a
+            // surplus bracket.
             let places = parser().parse(&format!("{text}\n)")).err();
             let errors = places.into_iter().flat_map(|errors| errors.errors);
             let places = errors.filter_map(|error| error.source_info).next();
@@ -74,7 +74,8 @@ fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     start + byte.unwrap_or(rest.len())
 }
 
-/// The parser's error in the terms of these files; `rest` is the expression from the error onwards.
+/// Rewords the parser's error in the terms of strategy files; `rest` is the expression from the
+/// error onwards.
 fn complaint(message: &str, rest: &str) -> String {
     if message.contains("recursion limit") {
         return format!("is nested too deeply, expected at most {DEEPEST} levels of brackets");
@@ -124,8 +125,8 @@ fn token(rest: &str) -> &str {
     &rest[..end]
 }
 
-/// The offset of each byte of a string value, and of its end; the value as written is at the
-/// beginning of `source`, at `start`.
+/// The offset of each byte of a string value, and of its end. `source` begins with the value as
+/// written, at offset `start`.
 fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
     let mut quotes = ["\"\"\"", "'''", "\"", "'"].into_iter();
     let opening = quotes.find(|quotes| source.starts_with(quotes));

@@ -37,13 +37,13 @@ struct Reader<'a, 'b> {
     scope: &'a Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
-    /// Inside `mates(...)`, where only shared variables are available.
+    /// Whether this is inside `mates(...)`, where only shared variables are available.
     among_mates: bool,
     depth: usize,
 }
 
 impl Reader<'_, '_> {
-    /// Reports a fault of a part.
+    /// Reports a fault in a part.
     fn refuse<T>(&self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("`{}` {message}", self.key);
         let diagnostics = &self.scope.document.loader.diagnostics;
@@ -149,7 +149,7 @@ impl Reader<'_, '_> {
 
     fn refuse_to_mates<T>(&self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
         let message =
-            format!("uses {name} in mates(), which is {what}, expected a shared variable");
+            format!("uses {name} in mates(), but {name} is {what}; expected a shared variable");
         self.refuse(part, &message)
     }
 

@@ -2,8 +2,8 @@
 //!
 //! A term is a fact, a variable, a measure or a count of teammates. A number compared with
 //! constants gets one value for each constant and for each gap between constants. Other conditions,
-//! such as a comparison of two numbers, are terms that may be true or false. This overestimates the
-//! cases, never underestimates them.
+//! such as a comparison of two numbers, are terms that may be true or false. This may overestimate
+//! the number of cases, but never underestimates it.
 
 use super::scope::Scope;
 use crate::strategy::{Expression, Fact, Join, Kind, Measure, Program, Task};
@@ -66,7 +66,8 @@ pub(super) fn check(scope: &Scope<'_>, program: &Program) {
     }
 }
 
-/// The restricted values of the variables in a mode's condition, as a string.
+/// The values of those variables in a mode's condition that only ever have constant values, as part
+/// of a message.
 fn only_ever(program: &Program, mode: usize) -> String {
     let mut asked = BTreeSet::new();
     let when = program.modes[mode].when.iter();
@@ -130,14 +131,15 @@ fn laws() -> [Expression; 3] {
 /// The terms of a program's conditions.
 struct Terms<'a> {
     program: &'a Program,
-    /// By printed form.
+    /// Index of each term by its printed form.
     index: BTreeMap<String, usize>,
     /// For each term, one value per distinguishable case.
     values: Vec<Vec<f64>>,
 }
 
 impl Terms<'_> {
-    /// A condition with terms replaced by variables, by their index in this list; adds new terms.
+    /// A condition with terms replaced by variables, numbered by the terms' indices; adds new
+    /// terms.
     fn formula(&mut self, condition: &Expression) -> Expression {
         if let Some(value) = condition.constant() {
             return Expression::Constant(value);
@@ -169,7 +171,7 @@ impl Terms<'_> {
         }
     }
 
-    /// Whether two Booleans are joined; a constant alone does not determine its kind.
+    /// Whether the operator joins two Booleans; a constant alone does not determine its kind.
     fn joins_truths(&self, join: Join, sides: &(Expression, Expression)) -> bool {
         let is_truth = |side| self.program.kind_of(side) == Kind::Truth;
         matches!(join, Join::And | Join::Or) || is_truth(&sides.0) || is_truth(&sides.1)
@@ -205,7 +207,7 @@ impl Terms<'_> {
         Some(variable)
     }
 
-    /// The possible values of a term. For a number: the minimum, and whether it is an integer.
+    /// All values of a term; or, for a number, its lower bound and whether it is an integer.
     fn values_of(&self, term: &Expression) -> (Vec<f64>, Option<bool>) {
         let number = |least, is_whole| (vec![least], Some(is_whole));
         match term {

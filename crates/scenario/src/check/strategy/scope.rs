@@ -27,13 +27,13 @@ impl<'a> Scope<'a> {
         variables.map(|variable| variable.name.as_str()).collect()
     }
 
-    /// Reports a fault of the value at `path`; the message refers to its key.
+    /// Reports a fault in the value at `path`; the message names its key.
     pub(super) fn note(&self, path: &str, message: &str) {
         let message = format!("{} {message}", key_of(path));
         self.document.note(path, message);
     }
 
-    /// The same, for callers that cannot continue without the value.
+    /// Like [`Scope::note`], for callers that cannot continue without the value.
     pub(super) fn refuse<T>(&self, path: &str, message: &str) -> Option<T> {
         self.note(path, message);
         None
@@ -44,7 +44,7 @@ impl<'a> Scope<'a> {
         self.document.note_missing(path, expected);
     }
 
-    /// Reports a fault of a mode.
+    /// Reports a fault in a mode.
     pub(super) fn note_mode(&self, program: &Program, mode: usize, message: &str) {
         let message = format!("mode {} {message}", program.path(mode));
         self.document.note(&format!("mode.{mode}"), message);

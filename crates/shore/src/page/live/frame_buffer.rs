@@ -47,8 +47,8 @@ impl FrameBuffer {
         {
             self.past.pop_front();
         }
-        // The sim's own bytes: the page decodes CDR with the `.msg` files in the first message, so
-        // no second encoding can diverge.
+        // Pass on the sim's own bytes: the page decodes CDR with the `.msg` files in the first
+        // message, so no second encoding can diverge.
         (self.stamp, self.is_over, self.newest) =
             (frame.stamp, frame.over, Some(Outgoing::now(cdr)));
         (self.count, self.came) = (self.count + 1, Some(now));

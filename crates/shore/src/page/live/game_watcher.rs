@@ -36,7 +36,7 @@ const PATIENCE: Patience = Patience {
     missing: Duration::from_secs(1),
     unheard: Duration::from_secs(1),
 };
-/// Minimum interval between estimates, however fast the game is.
+/// Minimum interval between estimates, at any game speed.
 const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
 /// Watches for the game in its own thread.
@@ -72,7 +72,7 @@ impl GameWatcher {
                     session = None;
                 }
                 Err(missing) => {
-                    // A permanent refusal may still end when a different game takes this one's
+                    // Even a permanent refusal may end, when a different game takes this one's
                     // place.
                     let reason = missing.to_string();
                     if reason != said {
@@ -131,7 +131,7 @@ impl GameWatcher {
             NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until)))
                 .inspect_err(no_thread);
         while !self.shared.is_closing() && session.sim.state() == SimState::Alive {
-            // Every round handles steering; a command to steer only starts a round.
+            // Every round handles steering; the command only starts a round.
             if let Some(Command::Control(control)) = self.commands.take(ROUND) {
                 // Requests beyond the queue are dropped; the page has to repeat them.
                 requests.put(control);

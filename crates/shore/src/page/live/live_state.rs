@@ -29,7 +29,7 @@ pub(super) struct LiveGame {
     pub(super) name: GameName,
     /// The sim's description.
     pub(super) info: GameInfo,
-    /// As JSON.
+    /// The chart as JSON.
     pub(super) chart: Value,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct LiveGame {
 #[derive(Clone, Debug)]
 pub(super) struct HelmMessage {
     pub(super) light: String,
-    /// With utilities, if any page requests them.
+    /// The report with utilities, if any page requests them.
     pub(super) full: Option<String>,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct LiveState {
     pub(super) missing: String,
     /// The run state, if the sim publishes it.
     pub(super) run: Option<RunState>,
-    /// Increases with each change of the run.
+    /// Increases with each change of the run state.
     pub(super) run_news: u64,
     pub(super) frames: FrameBuffer,
     pub(super) event_log: EventLog,

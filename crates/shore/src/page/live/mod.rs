@@ -59,7 +59,7 @@ struct SharedState {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Command {
-    /// For the whole game, except commands that stop boats.
+    /// A command for the whole game, other than one that stops boats.
     Control(Control),
     /// The state has new set-points for steered boats.
     Steer,

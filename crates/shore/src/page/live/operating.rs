@@ -109,7 +109,7 @@ pub(super) fn operate(
     let thread = start_thread("page-operate", move || {
         let reply = ask(&bus, &game, vehicle, &command);
         if let (Err(_), Some(stop)) = (&reply, stop) {
-            // Without the token no reply counts, but the boat's status does.
+            // Without the token, replies are not trusted, but the boat's status is.
             at_work
                 .stops
                 .wait(ANSWER, |orders| orders.is_shown(&named, stop));

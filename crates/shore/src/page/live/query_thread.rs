@@ -20,7 +20,7 @@ const ROUND: Duration = Duration::from_millis(50);
 const HELM_ANSWER: Duration = Duration::from_secs(1);
 /// Reciprocal of the maximum share of time that selected helms spend on replies.
 const SHARE: u32 = 5;
-/// The same for helms of which only the mode is needed, for a list of all boats.
+/// Like [`SHARE`], for helms whose mode alone is needed, for the list of all boats.
 const LIST_SHARE: u32 = 20;
 /// Interval between queries for a helm's mode.
 const LIST_INTERVAL: Duration = Duration::from_secs(2);
@@ -53,7 +53,7 @@ struct Turn {
 
 impl QuerySchedule {
     /// The helm to query now, if any: the one that has waited longest. Selected helms precede those
-    /// of which only the mode is needed.
+    /// whose mode alone is needed.
     fn next(
         &mut self,
         wanted: &BTreeMap<VehicleId, bool>,
@@ -97,7 +97,7 @@ impl QuerySchedule {
 
     /// Records a query from `start` to `end`. A lockstep game waits while a mind answers, and one
     /// process may run all minds, so after a long reply no helm is queried for some time. A paused
-    /// game waits for no mind.
+    /// game does not wait for minds.
     fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(turn.vehicle, (start, turn.functions));
         let share = if turn.is_listed { LIST_SHARE } else { SHARE };
@@ -186,7 +186,7 @@ impl QueryThread {
             self.shared.news.send_replace(());
             return;
         }
-        // Encoding a full report takes long, so unlock the state meanwhile.
+        // Encoding a full report takes a long time, so unlock the state meanwhile.
         let full =
             functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
@@ -313,7 +313,7 @@ mod tests {
             |all: &[(VehicleId, u64)], boat| all.iter().filter(|(asked, _)| *asked == boat).count();
         let quick = asked((&wanted, &BOATS), 0, 4000, true);
         assert_eq!(BOATS.map(|boat| of(&quick, boat)), [40, 2, 2], "{quick:?}");
-        // With no boat selected: a twentieth of the time, each helm in turn.
+        // With no boat selected, replies take a twentieth of the time, and each helm has its turn.
         let slow = asked((&BTreeMap::new(), &BOATS), 100, 12_000, true);
         assert_eq!(slow.len(), 6, "{slow:?}");
         assert_eq!(BOATS.map(|boat| of(&slow, boat)), [2, 2, 2]);

@@ -21,7 +21,7 @@ pub(super) struct PageViewer {
     access: Access,
     page: u64,
     /// The selected boat, and whether utilities are requested. Kept for the next game if it has a
-    /// boat of this name.
+    /// boat with this name.
     selection: Option<(String, bool)>,
     wants_modes: bool,
     sent: Sent,

@@ -1,5 +1,5 @@
-//! A thread that plays futures of the recorded game, for one page after another: each uses all
-//! cores.
+//! A thread that plays futures of the recorded game, for one page at a time, because each request
+//! uses all cores.
 
 use crate::page::message::PageMessage;
 use crate::page::request::Question;
@@ -20,7 +20,7 @@ pub trait Futures: Send {
     /// result for the page.
     ///
     /// # Errors
-    /// What is wrong with the question, or why futures cannot be played.
+    /// The fault in the question, or the reason why futures cannot be played.
     fn play(
         &mut self,
         question: &Question,
@@ -35,7 +35,7 @@ struct Queue {
     questions: BTreeMap<u64, Question>,
     /// By viewer: the newest message.
     messages: BTreeMap<u64, String>,
-    /// The viewer whose question is in progress, and what stops it.
+    /// The viewer whose question is in progress, and the flag that stops it.
     current: Option<(u64, Arc<AtomicBool>)>,
     is_closed: bool,
 }

@@ -244,7 +244,7 @@ mod tests {
             }
             go.send(()).unwrap();
         }
-        // The third starts only after the second was returned.
+        // The third report starts only after the second was returned.
         let kept: Vec<u64> = thread.0.visit(|queue| {
             queue
                 .answers

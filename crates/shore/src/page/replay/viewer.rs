@@ -342,7 +342,7 @@ impl Viewer for PageViewer {
             PageRequest::Curves { vehicle } => self.request_curves(vehicle.as_deref())?,
             PageRequest::WhatIf { question } => {
                 let thread = self.shared.futures.as_ref();
-                let thread = thread.ok_or("this game cannot be played on")?;
+                let thread = thread.ok_or("this game cannot be continued")?;
                 thread.request(self.viewer, question.clone());
             }
             PageRequest::Control {
