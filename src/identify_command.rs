@@ -35,6 +35,9 @@ pub(crate) struct Args {
     /// them]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fit: Vec<String>,
+    /// Also fits the mean current; without positions in the log, it is hard to tell from the thrust
+    #[arg(long, conflicts_with_all = ["current_m_s", "current_toward_deg"])]
+    fit_current: bool,
     /// Length of a segment, s: the simulation restarts from the recorded data at the beginning of
     /// each one
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(1.0, 3600.0, "s"))]
@@ -71,7 +74,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             out.display()
         )));
     }
-    let parameters = identify::parameters(&args.fit, &boat)?;
+    let mut parameters = identify::parameters(&args.fit, &boat)?;
+    if args.fit_current {
+        let names = identify::WATER.map(str::to_owned);
+        parameters.extend(identify::parameters(&names, &boat)?);
+    }
     let log = Log::of_sheet(&sheet(args)?, &boat)?;
     let setting = Setting {
         sea: args.water.sea()?,
@@ -145,6 +152,11 @@ fn table(boat: &str, log: &str, fit: &Fit) -> String {
             estimate.plus_minus,
             estimate.parameter.table,
             estimate.parameter.key
+        ));
+    }
+    if let Some((speed_m_s, toward_deg)) = fit.current() {
+        text.push_str(&format!(
+            "  current {speed_m_s:.2} m/s toward {toward_deg:.0}°: for trials, --current-m-s {speed_m_s:.2} --current-toward-deg {toward_deg:.0}\n"
         ));
     }
     for quality in &fit.qualities {

@@ -4,6 +4,7 @@
 use primitives::SimTime;
 use primitives::stream::Stream;
 use scenario::boat::{Boat, Drive};
+use scenario::sea::Sea;
 use std::path::Path;
 use trial::identify::{self, Fit, Log, NoFit, Setting};
 use trial::{Engine, Orders, Sheet, Start, TrialBoat};
@@ -62,9 +63,26 @@ fn log_csv(
     correlation: f64,
     stream: &mut Stream,
 ) -> String {
+    log_in(
+        &trial::still_sea(),
+        boat,
+        orders_csv,
+        (noise, correlation),
+        stream,
+    )
+}
+
+/// The same in a sea.
+fn log_in(
+    sea: &Sea,
+    boat: &Boat,
+    orders_csv: &str,
+    (noise, correlation): (f64, f64),
+    stream: &mut Stream,
+) -> String {
     let sheet = Sheet::read("orders.csv", orders_csv.as_bytes()).expect("it is CSV");
     let orders = Orders::of_sheet(&sheet, &Engine::new(boat)).expect("it understands them");
-    let mut trial_boat = TrialBoat::new(boat, &trial::still_sea(), TICK, 1, &Start::default());
+    let mut trial_boat = TrialBoat::new(boat, sea, TICK, 1, &Start::default());
     let mut samples = trial::replay(&mut trial_boat, &orders, orders.end()).expect("it sails");
     let mut errors = NOISE.map(|sigma| noise * sigma * stream.normal());
     let fresh = (1.0 - correlation * correlation).sqrt();
@@ -171,6 +189,44 @@ fn intervals_hold_for_errors_that_last() {
     }
     // 95 % of 54 is 51; fewer than 46 would occur with a probability of one in a hundred.
     assert!(within >= 46, "{within} of 54 within their 95 %");
+}
+
+/// A log from water that nobody measured: the fit finds its current, and the boat.
+#[test]
+fn an_unknown_current_is_found_with_the_boat() {
+    let truth = boat();
+    let mut sea = trial::still_sea();
+    trial::set_mean_current(&mut sea, 0.5, 120.0);
+    let mut stream = Stream::new(21, "test");
+    let orders = orders_csv(&mut stream);
+    let csv = log_in(&sea, &truth, &orders, (1.0, 0.0), &mut stream);
+    let of_boat = identify::parameters(&[], &truth).expect("the usual ones");
+    let mut names: Vec<&str> = of_boat.iter().map(|parameter| parameter.name).collect();
+    names.extend(identify::WATER);
+    let fit = fitted(&wrong(&truth), &csv, &names).unwrap_or_else(|e| panic!("{e}"));
+    let (east, north) = (0.5 * 0.866_025_4, -0.25);
+    for estimate in &fit.estimates {
+        let name = estimate.parameter.name;
+        let want = match name {
+            "current_east" => east,
+            "current_north" => north,
+            _ => estimate.parameter.value(&truth).expect("it has it"),
+        };
+        let error = (estimate.value - want).abs();
+        assert!(
+            error < 2.0 * estimate.plus_minus,
+            "{name} {want} is {} ± {}",
+            estimate.value,
+            estimate.plus_minus
+        );
+    }
+    let (speed_m_s, toward_deg) = fit.current().expect("it was fitted");
+    assert!((speed_m_s - 0.5).abs() < 0.01 && (toward_deg - 120.0).abs() < 1.0);
+    let water = &fit.estimates[of_boat.len()..];
+    assert!(
+        water[..2].iter().all(|current| current.plus_minus < 0.05),
+        "{water:?}"
+    );
 }
 
 #[test]

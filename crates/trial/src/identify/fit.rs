@@ -1,11 +1,13 @@
 //! Searches for the parameters that best fit a log, and estimates their uncertainty.
 
 use super::log::{CHANNELS, Log, Unit};
-use super::parameter::{Knob, PARAMETERS, Parameter};
+use super::parameter::{Knob, Model, PARAMETERS, Parameter, WATER};
 use super::problem::Problem;
 use super::rollout::Setting;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector};
+use primitives::Ned;
+use primitives::angle::compass_deg_from_rad;
 use scenario::boat::Boat;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::cell::Cell;
@@ -62,6 +64,28 @@ pub struct Fit {
     pub segments: usize,
     /// The number of measured values.
     pub measured: usize,
+}
+
+impl Fit {
+    /// The fitted mean current: its speed (m/s) and the direction in which it flows (compass
+    /// degrees); `None` if it was not fitted.
+    pub fn current(&self) -> Option<(f64, f64)> {
+        let [east, north] = WATER.map(|name| {
+            let of = |estimate: &&Estimate| estimate.parameter.name == name;
+            self.estimates
+                .iter()
+                .find(of)
+                .map(|estimate| estimate.value)
+        });
+        let current = Ned {
+            east: east?,
+            north: north?,
+        };
+        Some((
+            current.length(),
+            compass_deg_from_rad(current.direction_rad()),
+        ))
+    }
 }
 
 /// Why there is no fit.
@@ -150,8 +174,13 @@ pub fn fit(
     parameters: &[Parameter],
     tell: &dyn Fn(Step),
 ) -> Result<Fit, NoFit> {
-    let knob =
-        |parameter: &Parameter| Knob::new(*parameter, boat).ok_or(NoFit::NotThere(parameter.name));
+    let model = Model {
+        boat: boat.clone(),
+        current: setting.sea.current.mean_m_s,
+    };
+    let knob = |parameter: &Parameter| {
+        Knob::new(*parameter, &model).ok_or(NoFit::NotThere(parameter.name))
+    };
     let knobs = parameters
         .iter()
         .map(knob)
@@ -170,7 +199,7 @@ pub fn fit(
             rms,
         })
     };
-    let mut problem = Problem::new(boat, setting, log, knobs, &told);
+    let mut problem = Problem::new(model, setting, log, knobs, &told);
     let first_guess = problem.sigmas;
     for weighing in 0..WEIGHINGS {
         let (found, report) = LevenbergMarquardt::new()
@@ -207,12 +236,12 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let student = student_975(problem.segments.len() - 1);
     let estimate = |(i, knob): (usize, &Knob)| {
         let value = knob.value(at[i]);
-        // The search varies the logarithm, so d value = value d log.
+        let slope = knob.slope(at[i]);
         Estimate {
             parameter: knob.parameter,
             before: knob.before,
             value,
-            plus_minus: value * f64::max(NORMAL_975 * deviation(i), student * by_segment[i]),
+            plus_minus: slope * f64::max(NORMAL_975 * deviation(i), student * by_segment[i]),
         }
     };
     let mut confused = vec![];
@@ -229,7 +258,7 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
         }
     }
     Ok(Fit {
-        boat: problem.boat_at(at),
+        boat: problem.model_at(at).boat,
         estimates: problem.knobs.iter().enumerate().map(estimate).collect(),
         qualities: (0..6)
             .filter_map(|channel| quality(problem, channel))
@@ -240,7 +269,7 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     })
 }
 
-/// The covariance of the parameters' logarithms, s² (JᵀJ)⁻¹.
+/// The covariance of the search coordinates, s² (JᵀJ)⁻¹.
 fn covariance(
     jacobian: &DMatrix<f64>,
     variance: f64,
@@ -271,7 +300,7 @@ fn covariance(
         .ok_or_else(|| NoFit::Undetermined(names()))
 }
 
-/// The standard deviations of the parameters' logarithms by the delete-one jackknife over segments.
+/// The standard deviations of the search coordinates by the delete-one jackknife over segments.
 /// White noise gives the same as [`covariance`]; but the errors of a real log last for seconds, and
 /// intervals for white noise then are several times too narrow.
 fn deviations_by_segment(

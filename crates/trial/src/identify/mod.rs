@@ -11,7 +11,7 @@ mod rollout;
 
 pub use fit::{Confused, Estimate, Fit, NoFit, Quality, Step, fit, names, parameters};
 pub use log::Log;
-pub use parameter::{PARAMETERS, Parameter};
+pub use parameter::{PARAMETERS, Parameter, WATER};
 pub use rollout::Setting;
 
 /// A boat file with the fitted parameters, and everything else from `base`. `log` is the log's

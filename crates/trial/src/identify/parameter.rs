@@ -1,10 +1,18 @@
-//! Fittable parameters: numbers of a boat, their keys in a boat file, and how the search varies
-//! them.
+//! Fittable parameters: numbers of a boat or of the water, their keys in a boat file, and how the
+//! search varies them.
 
-use primitives::math;
+use primitives::{Ned, math};
 use scenario::boat::{Boat, Drive, Thruster};
 
-/// A fittable number of a boat.
+/// A boat and the water around it.
+#[derive(Clone, Debug)]
+pub(super) struct Model {
+    pub(super) boat: Boat,
+    /// Mean current, m/s.
+    pub(super) current: Ned,
+}
+
+/// A fittable number of a boat, or of the water.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// Its name on the command line.
@@ -15,58 +23,67 @@ pub struct Parameter {
     pub key: &'static str,
     /// Whether it is fitted by default.
     pub by_default: bool,
-    place: fn(&mut Boat) -> Option<&mut f64>,
+    place: fn(&mut Model) -> Option<&mut f64>,
 }
 
+/// The parameters of the water: the mean current, m/s.
+// A wind cannot be added: its force is too much like the hull's own drag. In a log of four minutes,
+// a wind in the opposite direction fitted as well.
+pub const WATER: [&str; 2] = ["current_east", "current_north"];
+
 /// All parameters, in the order of reports.
-pub const PARAMETERS: [Parameter; 16] = [
-    hull("surge_linear", "surge_linear_kg_s", true, |boat| {
-        Some(&mut boat.hull.surge_linear_kg_s)
+pub const PARAMETERS: [Parameter; 18] = [
+    hull("surge_linear", "surge_linear_kg_s", true, |model| {
+        Some(&mut model.boat.hull.surge_linear_kg_s)
     }),
-    hull("surge_quadratic", "surge_quadratic_kg_m", true, |boat| {
-        Some(&mut boat.hull.surge_quadratic_kg_m)
+    hull("surge_quadratic", "surge_quadratic_kg_m", true, |model| {
+        Some(&mut model.boat.hull.surge_quadratic_kg_m)
     }),
-    hull("sway_linear", "sway_linear_kg_s", true, |boat| {
-        Some(&mut boat.hull.sway_linear_kg_s)
+    hull("sway_linear", "sway_linear_kg_s", true, |model| {
+        Some(&mut model.boat.hull.sway_linear_kg_s)
     }),
-    hull("sway_lift", "sway_lift_kg_m", false, |boat| {
-        Some(&mut boat.hull.sway_lift_kg_m)
+    hull("sway_lift", "sway_lift_kg_m", false, |model| {
+        Some(&mut model.boat.hull.sway_lift_kg_m)
     }),
-    hull("yaw_linear", "yaw_linear_kg_m2_s", true, |boat| {
-        Some(&mut boat.hull.yaw_linear_kg_m2_s)
+    hull("yaw_linear", "yaw_linear_kg_m2_s", true, |model| {
+        Some(&mut model.boat.hull.yaw_linear_kg_m2_s)
     }),
-    hull("yaw_quadratic", "yaw_quadratic_kg_m2", true, |boat| {
-        Some(&mut boat.hull.yaw_quadratic_kg_m2)
+    hull("yaw_quadratic", "yaw_quadratic_kg_m2", true, |model| {
+        Some(&mut model.boat.hull.yaw_quadratic_kg_m2)
     }),
-    hull("yaw_lift", "yaw_lift_kg_m", true, |boat| {
-        Some(&mut boat.hull.yaw_lift_kg_m)
+    hull("yaw_lift", "yaw_lift_kg_m", true, |model| {
+        Some(&mut model.boat.hull.yaw_lift_kg_m)
     }),
-    hull("munk_factor", "munk_factor", false, |boat| {
-        Some(&mut boat.hull.munk_factor)
+    hull("munk_factor", "munk_factor", false, |model| {
+        Some(&mut model.boat.hull.munk_factor)
     }),
-    hull("crossflow", "crossflow_coefficient", false, |boat| {
-        Some(&mut boat.hull.crossflow_coefficient)
+    hull("crossflow", "crossflow_coefficient", false, |model| {
+        Some(&mut model.boat.hull.crossflow_coefficient)
     }),
-    hull("added_surge", "added_surge_kg", false, |boat| {
-        Some(&mut boat.hull.added_surge_kg)
+    hull("added_surge", "added_surge_kg", false, |model| {
+        Some(&mut model.boat.hull.added_surge_kg)
     }),
-    hull("added_sway", "added_sway_kg", false, |boat| {
-        Some(&mut boat.hull.added_sway_kg)
+    hull("added_sway", "added_sway_kg", false, |model| {
+        Some(&mut model.boat.hull.added_sway_kg)
     }),
-    hull("added_yaw", "added_yaw_kg_m2", false, |boat| {
-        Some(&mut boat.hull.added_yaw_kg_m2)
+    hull("added_yaw", "added_yaw_kg_m2", false, |model| {
+        Some(&mut model.boat.hull.added_yaw_kg_m2)
     }),
-    hull("yaw_inertia", "yaw_inertia_kg_m2", false, |boat| {
-        Some(&mut boat.hull.yaw_inertia_kg_m2)
+    hull("yaw_inertia", "yaw_inertia_kg_m2", false, |model| {
+        Some(&mut model.boat.hull.yaw_inertia_kg_m2)
     }),
-    thrusters("port_gain", "port_gain", |boat| {
-        thruster(boat).map(|thruster| &mut thruster.flaws.gain.0)
+    thrusters("port_gain", "port_gain", |model| {
+        thruster(&mut model.boat).map(|thruster| &mut thruster.flaws.gain.0)
     }),
-    thrusters("starboard_gain", "starboard_gain", |boat| {
-        thruster(boat).map(|thruster| &mut thruster.flaws.gain.1)
+    thrusters("starboard_gain", "starboard_gain", |model| {
+        thruster(&mut model.boat).map(|thruster| &mut thruster.flaws.gain.1)
     }),
-    thrusters("lag", "lag_s", |boat| {
-        thruster(boat).map(|thruster| &mut thruster.lag_s)
+    thrusters("lag", "lag_s", |model| {
+        thruster(&mut model.boat).map(|thruster| &mut thruster.lag_s)
+    }),
+    water(WATER[0], "east_m_s", |model| Some(&mut model.current.east)),
+    water(WATER[1], "north_m_s", |model| {
+        Some(&mut model.current.north)
     }),
 ];
 
@@ -74,7 +91,7 @@ const fn hull(
     name: &'static str,
     key: &'static str,
     by_default: bool,
-    place: fn(&mut Boat) -> Option<&mut f64>,
+    place: fn(&mut Model) -> Option<&mut f64>,
 ) -> Parameter {
     Parameter {
         name,
@@ -88,13 +105,27 @@ const fn hull(
 const fn thrusters(
     name: &'static str,
     key: &'static str,
-    place: fn(&mut Boat) -> Option<&mut f64>,
+    place: fn(&mut Model) -> Option<&mut f64>,
 ) -> Parameter {
     Parameter {
         name,
         table: "thruster",
         key,
         by_default: true,
+        place,
+    }
+}
+
+const fn water(
+    name: &'static str,
+    key: &'static str,
+    place: fn(&mut Model) -> Option<&mut f64>,
+) -> Parameter {
+    Parameter {
+        name,
+        table: "current",
+        key,
+        by_default: false,
         place,
     }
 }
@@ -107,20 +138,26 @@ fn thruster(boat: &mut Boat) -> Option<&mut Thruster> {
 }
 
 impl Parameter {
-    /// Its value in `boat`, if present.
+    /// Its value in `boat`, if present; 0 for one of the water.
     pub fn value(&self, boat: &Boat) -> Option<f64> {
-        (self.place)(&mut boat.clone()).copied()
+        self.value_in(&Model {
+            boat: boat.clone(),
+            current: Ned::default(),
+        })
     }
 
-    fn set(&self, boat: &mut Boat, value: f64) {
-        if let Some(place) = (self.place)(boat) {
-            *place = value;
-        }
+    fn value_in(&self, model: &Model) -> Option<f64> {
+        (self.place)(&mut model.clone()).copied()
+    }
+
+    /// Whether it belongs to the water rather than the boat.
+    pub fn is_of_water(&self) -> bool {
+        WATER.contains(&self.name)
     }
 }
 
-/// A parameter as varied by the search: by a factor, so that it stays positive and steps are
-/// comparable.
+/// A parameter as varied by the search. Those of the boat vary by a factor, so that they stay
+/// positive and steps are comparable; those of the water by a difference.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knob {
     pub(super) parameter: Parameter,
@@ -134,12 +171,12 @@ pub(super) struct Knob {
 const FROM_ZERO: f64 = 0.01;
 
 impl Knob {
-    pub(super) fn new(parameter: Parameter, boat: &Boat) -> Option<Knob> {
-        let before = parameter.value(boat)?;
+    pub(super) fn new(parameter: Parameter, model: &Model) -> Option<Knob> {
+        let before = parameter.value_in(model)?;
         let scale = if before > 0.0 {
             before
         } else {
-            FROM_ZERO * boat.hull.mass_kg
+            FROM_ZERO * model.boat.hull.mass_kg
         };
         Some(Knob {
             parameter,
@@ -150,12 +187,26 @@ impl Knob {
 
     /// The value at a search coordinate, where 0 is the start.
     pub(super) fn value(&self, at: f64) -> f64 {
+        if self.parameter.is_of_water() {
+            return self.before + at;
+        }
         // A factor of e^20 either way exceeds any real boat but does not overflow.
         self.scale * math::exp(at.clamp(-20.0, 20.0))
     }
 
-    /// Sets the value at a search coordinate in a boat.
-    pub(super) fn turn(&self, boat: &mut Boat, at: f64) {
-        self.parameter.set(boat, self.value(at));
+    /// The change of the value per change of the search coordinate.
+    pub(super) fn slope(&self, at: f64) -> f64 {
+        if self.parameter.is_of_water() {
+            1.0
+        } else {
+            self.value(at)
+        }
+    }
+
+    /// Sets the value at a search coordinate.
+    pub(super) fn turn(&self, model: &mut Model, at: f64) {
+        if let Some(place) = (self.parameter.place)(model) {
+            *place = self.value(at);
+        }
     }
 }

@@ -7,11 +7,10 @@
 //! and Pereyra 1973, with Kaufman's simplification of the Jacobian, 1975).
 
 use super::log::Log;
-use super::parameter::Knob;
+use super::parameter::{Knob, Model};
 use super::rollout::{Point, Setting, rollout};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
-use scenario::boat::Boat;
 
 /// Step of a parameter's logarithm for finite differences.
 const PARAMETER_STEP: f64 = 1e-4;
@@ -24,7 +23,7 @@ const CORRECTIONS: usize = 2;
 /// The fit of one log.
 #[derive(Clone)]
 pub(super) struct Problem<'a> {
-    pub(super) boat: &'a Boat,
+    model: Model,
     pub(super) setting: &'a Setting,
     pub(super) log: &'a Log,
     pub(super) segments: Vec<usize>,
@@ -48,7 +47,7 @@ pub(super) struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     pub(super) fn new(
-        boat: &'a Boat,
+        model: Model,
         setting: &'a Setting,
         log: &'a Log,
         knobs: Vec<Knob>,
@@ -73,7 +72,7 @@ impl<'a> Problem<'a> {
         let starts = segments[..segments.len() - 1].iter().map(known).collect();
         let at = DVector::zeros(knobs.len());
         let mut problem = Problem {
-            boat,
+            model,
             setting,
             log,
             segments,
@@ -100,14 +99,14 @@ impl<'a> Problem<'a> {
         self.settle();
     }
 
-    /// The boat at a search coordinate.
-    pub(super) fn boat_at(&self, at: &DVector<f64>) -> Boat {
-        let mut boat = self.boat.clone();
+    /// Boat and water at a search coordinate.
+    pub(super) fn model_at(&self, at: &DVector<f64>) -> Model {
+        let mut model = self.model.clone();
         self.knobs
             .iter()
             .zip(at.iter())
-            .for_each(|(knob, at)| knob.turn(&mut boat, *at));
-        boat
+            .for_each(|(knob, at)| knob.turn(&mut model, *at));
+        model
     }
 
     /// The numbers of measured values and of fitted values, including starts.
@@ -132,8 +131,10 @@ impl<'a> Problem<'a> {
             .collect()
     }
 
-    fn weighed(&self, boat: &Boat, starts: &[Point]) -> Option<DVector<f64>> {
-        let points = rollout(boat, self.setting, self.log, &self.segments, starts)?;
+    fn weighed(&self, model: &Model, starts: &[Point]) -> Option<DVector<f64>> {
+        let mut setting = self.setting.clone();
+        setting.sea.current.mean_m_s = model.current;
+        let points = rollout(&model.boat, &setting, self.log, &self.segments, starts)?;
         let residual = |(row, channel): &(usize, usize)| {
             (points[*row][*channel] - self.log.measured[*row][*channel]) / self.sigmas[*channel]
         };
@@ -146,14 +147,14 @@ impl<'a> Problem<'a> {
 
     /// Derivatives of the residuals with respect to the starts: a segment's start columns are
     /// stored in its rows.
-    fn by_starts(&self, boat: &Boat, residuals: &DVector<f64>) -> Option<DMatrix<f64>> {
+    fn by_starts(&self, model: &Model, residuals: &DVector<f64>) -> Option<DMatrix<f64>> {
         let mut columns = Vec::with_capacity(self.fitted.len());
         for channel in &self.fitted {
             let mut moved = self.starts.clone();
             moved
                 .iter_mut()
                 .for_each(|start| start[*channel] += START_STEP * self.sigmas[*channel]);
-            columns.push((self.weighed(boat, &moved)? - residuals) / START_STEP);
+            columns.push((self.weighed(model, &moved)? - residuals) / START_STEP);
         }
         Some(DMatrix::from_columns(&columns))
     }
@@ -200,14 +201,14 @@ impl<'a> Problem<'a> {
 
     /// Computes the best starts for these parameters.
     fn settle(&mut self) {
-        let boat = self.boat_at(&self.at);
-        self.residuals = self.weighed(&boat, &self.starts);
+        let model = self.model_at(&self.at);
+        self.residuals = self.weighed(&model, &self.starts);
         for _ in 0..CORRECTIONS {
             let Some(residuals) = &self.residuals else {
                 return;
             };
             let corrections = self
-                .by_starts(&boat, residuals)
+                .by_starts(&model, residuals)
                 .and_then(|by| self.corrections(&by, residuals));
             let Some(corrections) = corrections else {
                 return;
@@ -220,7 +221,7 @@ impl<'a> Problem<'a> {
             }
             // A correction that increases the residuals has left the nearly linear range of the
             // model.
-            match self.weighed(&boat, &starts) {
+            match self.weighed(&model, &starts) {
                 Some(better) if better.norm_squared() < residuals.norm_squared() => {
                     (self.starts, self.residuals) = (starts, Some(better));
                 }
@@ -253,15 +254,15 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let residuals = self.residuals.as_ref()?;
-        let by_starts = self.by_starts(&self.boat_at(&self.at), residuals)?;
+        let by_starts = self.by_starts(&self.model_at(&self.at), residuals)?;
         let mut columns = Vec::with_capacity(self.knobs.len());
         for i in 0..self.knobs.len() {
             let mut up = self.at.clone();
             let mut down = self.at.clone();
             up[i] += PARAMETER_STEP;
             down[i] -= PARAMETER_STEP;
-            let up = self.weighed(&self.boat_at(&up), &self.starts)?;
-            let down = self.weighed(&self.boat_at(&down), &self.starts)?;
+            let up = self.weighed(&self.model_at(&up), &self.starts)?;
+            let down = self.weighed(&self.model_at(&down), &self.starts)?;
             columns.push(self.project(&by_starts, &((up - down) / (2.0 * PARAMETER_STEP)))?);
         }
         Some(DMatrix::from_columns(&columns))
