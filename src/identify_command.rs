@@ -21,9 +21,9 @@ pub(crate) struct Args {
     boat: String,
     /// Recorded data: any log that `squall import` reads, or a CSV table with the columns t_s,
     /// commands as for `squall trial --orders`, heading_deg, surge_m_s, yaw_rate_deg_s and, if
-    /// available, sway_m_s, x_m and y_m
-    #[arg(long, value_name = "FILE", value_parser = existing)]
-    log: PathBuf,
+    /// available, sway_m_s, x_m and y_m. Can be repeated
+    #[arg(long, required = true, value_name = "FILE", value_parser = existing)]
+    log: Vec<PathBuf>,
     /// Boat in the log, if it contains several
     #[arg(long, value_name = "BOAT")]
     vehicle: Option<String>,
@@ -79,14 +79,22 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let names = identify::WATER.map(str::to_owned);
         parameters.extend(identify::parameters(&names, &boat)?);
     }
-    let log = Log::of_sheet(&sheet(args)?, &boat)?;
     let setting = Setting {
         sea: args.water.sea()?,
         seed: args.water.seed,
         tick: SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat))),
         segment: SimTime::from_s(args.segment_s),
     };
-    let named = args.log.display().to_string();
+    let mut log = Log::of_sheet(&sheet(args, &args.log[0])?, &boat)?;
+    for path in &args.log[1..] {
+        log.append(&Log::of_sheet(&sheet(args, path)?, &boat)?, setting.segment);
+    }
+    let named: Vec<String> = args
+        .log
+        .iter()
+        .map(|log| log.display().to_string())
+        .collect();
+    let named = named.join(", ");
     let progress = RefCell::new(Progress::without_end("steps"));
     let tell = |step: Step| {
         let left = step.rms.map_or(String::new(), |rms| {
@@ -109,16 +117,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// The table of the log: as written by the user, or of the boat in a log of another program.
-fn sheet(args: &Args) -> Result<Sheet> {
-    if Format::of(&args.log)? == Format::Csv && args.map.is_none() && args.vehicle.is_none() {
-        return read_sheet(&args.log);
+fn sheet(args: &Args, log: &Path) -> Result<Sheet> {
+    if Format::of(log)? == Format::Csv && args.map.is_none() && args.vehicle.is_none() {
+        return read_sheet(log);
     }
     let boat = args.vehicle.as_deref();
-    let table = import_command::table_of(&args.log, args.map.as_ref(), boat)?;
-    Ok(Sheet::read(
-        &args.log.display().to_string(),
-        table.as_bytes(),
-    )?)
+    let table = import_command::table_of(log, args.map.as_ref(), boat)?;
+    Ok(Sheet::read(&log.display().to_string(), table.as_bytes())?)
 }
 
 /// The path of the base as written in `out`: relative if both are in one folder, so that they can

@@ -46,6 +46,15 @@ impl Orders {
         Ok(Orders { steps })
     }
 
+    /// Appends other commands, this much later.
+    pub(crate) fn append(&mut self, other: &Orders, shift: SimTime) {
+        let later = other
+            .steps
+            .iter()
+            .map(|(at, command)| (*at + shift, *command));
+        self.steps.extend(later);
+    }
+
     /// The time of the last command.
     pub fn end(&self) -> SimTime {
         self.steps.last().map_or(SimTime::ZERO, |(at, _)| *at)

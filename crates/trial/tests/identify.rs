@@ -229,6 +229,46 @@ fn an_unknown_current_is_found_with_the_boat() {
     );
 }
 
+/// One log turns to both sides at one speed, the other drives straight at several.
+#[test]
+fn two_logs_determine_together_what_neither_does_alone() {
+    let truth = boat();
+    let logs = [
+        "t_s,port_pct,starboard_pct\n0,80,20\n20,20,80\n40,80,20\n60,20,80\n80,20,80\n",
+        "t_s,port_pct,starboard_pct\n0,30,30\n30,100,100\n60,60,60\n90,0,0\n120,0,0\n",
+    ];
+    let logs = logs.map(|orders| {
+        let csv = log_csv(&truth, orders, 1.0, 0.0, &mut Stream::new(5, "test"));
+        let sheet = Sheet::read("log.csv", csv.as_bytes()).expect("it is CSV");
+        Log::of_sheet(&sheet, &truth).unwrap_or_else(|e| panic!("{e}"))
+    });
+    let names = ["surge_linear", "surge_quadratic", "yaw_quadratic"];
+    let names = names.map(str::to_owned);
+    let parameters = identify::parameters(&names, &truth).expect("known names");
+    let mut start = truth.clone();
+    start.hull.surge_linear_kg_s *= 1.5;
+    start.hull.surge_quadratic_kg_m *= 0.8;
+    start.hull.yaw_quadratic_kg_m2 *= 0.8;
+    let fit = |log: &Log| identify::fit(&start, log, &setting(), &parameters, &|_| {});
+    let mut both = logs[0].clone();
+    both.append(&logs[1], setting().segment);
+    let together = fit(&both).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(together.segments, 4 + 6);
+    for estimate in &together.estimates {
+        let want = estimate.parameter.value(&truth).expect("it has it");
+        let error = (estimate.value - want).abs();
+        assert!(error < 2.0 * estimate.plus_minus, "{want}: {estimate:?}");
+        assert!(estimate.plus_minus < 0.5 * want, "{want}: {estimate:?}");
+    }
+    for log in &logs {
+        let is_worse = fit(log).map_or(true, |fit| {
+            let mut pairs = fit.estimates.iter().zip(&together.estimates);
+            pairs.any(|(alone, together)| alone.plus_minus > 2.0 * together.plus_minus)
+        });
+        assert!(is_worse);
+    }
+}
+
 #[test]
 fn without_noise_they_come_back_to_four_places() {
     let truth = boat();

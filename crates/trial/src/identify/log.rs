@@ -37,6 +37,8 @@ pub struct Log {
     /// x east, y north, heading (unwrapped), surge, sway, yaw rate; NaN for missing measurements.
     pub(super) measured: Vec<[f64; 6]>,
     pub(super) orders: Orders,
+    /// The row after the last one of each appended log.
+    ends: Vec<usize>,
 }
 
 /// Minimum number of rows for a fit.
@@ -93,10 +95,28 @@ impl Log {
         }
         unwrap_headings(&mut measured);
         Ok(Log {
+            ends: vec![measured.len()],
             times: times_s.into_iter().map(SimTime::from_s).collect(),
             measured,
             orders,
         })
+    }
+
+    /// Appends another log of the boat, after a pause that is longer than a segment, so that the next
+    /// segment begins with it.
+    pub fn append(&mut self, other: &Log, segment: SimTime) {
+        let end = *self.times.last().unwrap_or(&SimTime::ZERO);
+        let shift = end + segment + SimTime::from_s(1.0);
+        self.times.extend(other.times.iter().map(|at| *at + shift));
+        let rows = self.measured.len();
+        self.ends.extend(other.ends.iter().map(|end| rows + end));
+        self.measured.extend_from_slice(&other.measured);
+        self.orders.append(&other.orders, shift);
+    }
+
+    fn are_of_one_log(&self, a: usize, b: usize) -> bool {
+        let log_of = |row: usize| self.ends.partition_point(|end| *end <= row);
+        log_of(a) == log_of(b)
     }
 
     /// The first rows of segments: each is the first row at least `segment` after the previous one
@@ -120,8 +140,12 @@ impl Log {
                 .last()
                 .is_none_or(|last| self.times[row] - self.times[*last] >= segment);
             // A remainder shorter than half a segment is added to the previous one.
-            let left = *self.times.last().unwrap_or(&SimTime::ZERO) - self.times[row];
-            if due && is_start(cells) && (starts.is_empty() || left.0 * 2 >= segment.0) {
+            let end = self.ends[self.ends.partition_point(|end| *end <= row)];
+            let left = self.times[end - 1] - self.times[row];
+            let is_first = starts
+                .last()
+                .is_none_or(|last| !self.are_of_one_log(*last, row));
+            if due && is_start(cells) && (is_first || left.0 * 2 >= segment.0) {
                 starts.push(row);
             }
         }
