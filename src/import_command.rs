@@ -10,7 +10,7 @@ use recording::logs::name_of;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Rules and boat of a game that is not known.
+/// The game whose rules and boat are used if none is given.
 const BASE: &str = "scenarios/games/pav01_vs_pav01.toml";
 
 #[derive(clap::Args)]

@@ -24,7 +24,7 @@ pub(crate) enum PolicyFault {
         /// Number of values in the observation.
         found: usize,
     },
-    /// The network output a non-finite value.
+    /// The network returned a non-finite value.
     #[error("the model output a non-finite value")]
     NotFinite,
 }

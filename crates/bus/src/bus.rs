@@ -58,7 +58,7 @@ pub struct Bus {
     pub(crate) is_on_this_machine: bool,
 }
 
-/// Operations that need neither token, keys nor callback are those of the session itself.
+/// Operations that need no token, keys or callback are those of the session.
 impl Deref for Bus {
     type Target = dyn Session;
 

@@ -343,8 +343,8 @@ fn outputs(
     Ok(outputs)
 }
 
-/// How the declared shape or type of an output deviates from the computed one, which does not
-/// affect evaluation.
+/// How the declared shape or type of an output deviates from the computed one. The deviation does
+/// not affect evaluation.
 fn deviation(info: &ValueInfoProto, found: &[usize]) -> Option<String> {
     let tensor = info.r#type.as_ref()?.tensor_type.as_ref()?;
     let name = shown(&info.name);

@@ -20,7 +20,7 @@ pub enum Command {
     SetPoint(SetPoint),
     /// Execute this task with the boat's own controller.
     Task(Task),
-    /// The upload of a mission is over, finished or not.
+    /// The upload of a mission has ended, whether or not it succeeded.
     EndOfUpload,
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn named<const N: usize>(counts: [(&str, u64); N]) -> Vec<(String, u6
     counts.map(|(name, count)| (name.to_owned(), count)).into()
 }
 
-/// One end of a link that speaks a protocol.
+/// The gateway's end of a link, in one protocol.
 pub trait Codec {
     /// Starts a new link, discarding the state of the previous one.
     fn begin_link(&mut self);
@@ -81,7 +81,7 @@ pub trait Codec {
     /// Begins the upload of a mission.
     ///
     /// # Errors
-    /// The fault of the mission.
+    /// What is wrong with the mission.
     fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String>;
 
     /// Continues the upload of a mission; returns `Done` if there is none.
@@ -96,6 +96,6 @@ pub trait Codec {
     /// When the next message without a command is due, if any.
     fn due(&self) -> Option<SimTime>;
 
-    /// The counters by name, including counters of unknown names received.
+    /// Two lists: the counters by name, and how often each unknown message was received.
     fn counts(&self) -> [Vec<(String, u64)>; 2];
 }

@@ -13,13 +13,14 @@ use scenario::boat::Hold;
 /// Radius within which a station-keeping boat rests, m.
 // A radius below the noise of a satellite receiver would never let a boat rest.
 const STATION_RADIUS_M: f64 = 2.0;
-/// Return speed of a station-keeping boat per distance beyond this radius, 1/s.
+/// Ratio of a boat's return speed to its distance from the station, outside [`STATION_RADIUS_M`],
+/// 1/s.
 const STATION_RETURN_PER_S: f64 = 0.5;
 
 impl Contest {
     /// Sends an order to a vehicle. It is in force from its arrival until the next arrival or its
     /// expiry. A real boat receives it over a real link instead of the simulated one. `given_at` is
-    /// the time of the answered picture, capped at the present.
+    /// the time of the picture that the order answers; a future time counts as the present.
     ///
     /// # Errors
     /// [`BadOrder`] for invalid numbers; the vehicle then holds.
@@ -137,7 +138,8 @@ impl Contest {
         }
     }
 
-    /// Sets the station of each station-keeping boat that starts to hold, and clears all others.
+    /// Sets the station of each simulated station-keeping boat when it starts to hold, and clears it
+    /// when the boat stops holding.
     pub(super) fn update_stations(&mut self) {
         for i in 0..self.state.stations.len() {
             let vehicle = VehicleId::at(i);

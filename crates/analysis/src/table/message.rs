@@ -252,7 +252,7 @@ fn input(record: &InputRecord, scenario: &Scenario) -> Cells {
         _ => Cells::new(),
     };
     let word = match input {
-        // The order's own name identifies the kind.
+        // For an order, the kind of input is the name of the order.
         Some(Input::Ordered { .. }) => cells.remove("order").unwrap_or_default(),
         Some(Input::Pictured) => "pictured".to_owned(),
         Some(Input::Held(_)) => "held".to_owned(),

@@ -37,7 +37,7 @@ pub struct Report {
     pub games_done: usize,
     /// The keys of the axes.
     pub axes: Vec<String>,
-    /// The meanings of the axes, with units, from the reference of scenario files.
+    /// The meanings of the axes, with units, from the scenario file reference.
     pub axis_meanings: Vec<Option<String>>,
     /// The names of the entries.
     pub entries: Vec<String>,
@@ -123,7 +123,7 @@ pub struct Failure {
 }
 
 impl Report {
-    /// The report on the rows of a plan's first games, in order.
+    /// Builds the report from `rows`: the results of a plan's first games, in the plan's order.
     pub fn new(plan: &Plan, rows: &[Row]) -> Report {
         let sweep = plan.sweep();
         let observed = observations(plan, rows);

@@ -10,7 +10,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The results of recordings until they are read.
+/// Results of recordings, until a caller takes them.
 #[derive(Default)]
 pub struct RecordingLog {
     /// The most recently completed file.
@@ -70,7 +70,7 @@ pub struct Recordings {
     pub names: RecordingNames,
     /// Records every n-th game, including the first.
     pub every: u64,
-    /// The commit of the recording program.
+    /// The commit of the program that writes the recordings.
     pub commit: String,
 }
 
@@ -124,13 +124,13 @@ struct RecordedGame {
     stage: Stage,
 }
 
-/// A game without a played step leaves no file.
+/// The stage of a recording. A game in which no step was played leaves no file.
 enum Stage {
     Waiting,
     /// The game before its first step, and its first frame.
     Start(Box<Contest>, Arc<Frame>),
     Recording(Box<GameRecorder>, PathBuf),
-    /// The file is complete, or failed with a logged error.
+    /// The file is complete, or writing it failed and the error was logged.
     Ended,
 }
 

@@ -458,7 +458,7 @@ impl Trainer {
     }
 }
 
-/// Plays and learns once by PPO, after the fraction `done` of all samples.
+/// Plays and learns once by PPO. `done` is the fraction of all samples so far.
 fn update_by_ppo(
     learner: &mut ActorCritic,
     environment: &mut VectorEnvironment,

@@ -1,8 +1,8 @@
-//! An update of an off-policy algorithm: exploring games fill the replay buffer, then the
-//! optimisers take steps on samples drawn from it.
+//! An update of an off-policy algorithm: games played with exploration fill the replay buffer, then
+//! the optimisers take steps on samples drawn from it.
 //!
-//! Entries in the 2023 games used TD3 and double DQN: with these algorithms, the results in their
-//! paper can be reproduced.
+//! Entries in the 2023 games used TD3 and double DQN. Both are implemented so that the entrants'
+//! published results can be reproduced.
 
 use super::{Update, outputs};
 use crate::Learnt;
@@ -28,7 +28,8 @@ pub struct OffPolicy<L, S, A> {
 }
 
 impl OffPolicy<Td3Learner, Td3, Numbers> {
-    /// Plays and learns once. While `is_new`, actions are uniformly random until learning starts.
+    /// Plays and learns once. If `is_new`, actions are uniformly random until the buffer is large
+    /// enough for learning.
     pub(super) fn update(
         &mut self,
         environment: &mut VectorEnvironment,
@@ -48,8 +49,8 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
             }
             let outputs = pool.install(|| outputs(actor, observations));
             let explored = |(output, counts): (&[f32], &bool)| {
-                // If a boat does not follow its action, the action has no effect: critics learn
-                // this for every action.
+                // The action of a boat that does not follow it has no effect. Draw it at random, so
+                // that the critics learn this about every action.
                 if *counts {
                     td3::explored(td3::action(output), settings.exploration, stream)
                 } else {
@@ -93,7 +94,7 @@ impl OffPolicy<Td3Learner, Td3, Numbers> {
 }
 
 impl OffPolicy<DqnLearner, Dqn, u16> {
-    /// Plays and learns once, after this total number of samples.
+    /// Plays and learns once. `samples` is the number of samples so far.
     pub(super) fn update(
         &mut self,
         environment: &mut VectorEnvironment,
@@ -111,8 +112,8 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
         let choose = |observations: &[f32], counts: &[bool], _: usize| -> Vec<u16> {
             let outputs = pool.install(|| outputs(network, observations));
             let explored = |(values, counts): (&[f32], &bool)| {
-                // If a boat does not follow its action, the action has no effect: the network
-                // learns this for every action.
+                // The action of a boat that does not follow it has no effect. Draw it at random, so
+                // that the network learns this about every action.
                 dqn::explored(values, if *counts { epsilon } else { 1.0 }, stream) as u16
             };
             outputs
@@ -141,7 +142,7 @@ impl OffPolicy<DqnLearner, Dqn, u16> {
 }
 
 /// Plays this many steps of all games, and stores those of boats that a policy controls. `choose`
-/// receives the observations, which of them count, and the number of transitions.
+/// receives the observations, which of their actions count, and the number of stored transitions.
 fn play<A: Copy + Default>(
     environment: &mut VectorEnvironment,
     steps: usize,
