@@ -138,8 +138,8 @@ impl Contest {
         }
     }
 
-    /// Sets the station of each simulated station-keeping boat when it starts to hold, and clears it
-    /// when the boat stops holding.
+    /// Sets the station of each simulated station-keeping boat when it starts to hold, and clears
+    /// it when the boat stops holding.
     pub(super) fn update_stations(&mut self) {
         for i in 0..self.state.stations.len() {
             let vehicle = VehicleId::at(i);

@@ -102,8 +102,8 @@ impl Log {
         })
     }
 
-    /// Appends another log of the boat, after a pause that is longer than a segment, so that the next
-    /// segment begins with it.
+    /// Appends another log of the boat, after a pause that is longer than a segment, so that the
+    /// next segment begins with it.
     pub fn append(&mut self, other: &Log, segment: SimTime) {
         let end = *self.times.last().unwrap_or(&SimTime::ZERO);
         let shift = end + segment + SimTime::from_s(1.0);
