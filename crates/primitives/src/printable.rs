@@ -36,7 +36,7 @@ pub fn line(text: &str) -> String {
     shortened(&spelt(text, steers)).into_owned()
 }
 
-/// A message of one or more lines, each escaped as by [`line`].
+/// A message of one or more lines, each escaped as by [`line()`].
 pub fn message(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
