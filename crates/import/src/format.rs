@@ -1,7 +1,6 @@
 //! Recognises the format of a log by its content.
 
 use crate::{ImportError, file_error};
-use recording::{Bag, RecordingError};
 use std::io::Read;
 use std::path::Path;
 
@@ -48,7 +47,8 @@ impl Format {
         }
     }
 
-    /// Recognises the format of a file.
+    /// Recognises the format of a file. Squall's recordings are MCAP files, too; only reading the
+    /// whole file tells them apart.
     ///
     /// # Errors
     /// If the file cannot be read, or has a format that must be converted first.
@@ -62,7 +62,7 @@ impl Format {
             [] => convert("the file is empty", "expected a log"),
             head if head.starts_with(b"%%%%%%%%") => Ok(Format::Alog),
             [0xA3, 0x95, ..] => Ok(Format::Dataflash),
-            head if head.starts_with(b"\x89MCAP0\r\n") => Format::of_mcap(path),
+            head if head.starts_with(b"\x89MCAP0\r\n") => Ok(Format::Mcap),
             head if head.starts_with(b"#ROSBAG V2.0\n") => Ok(Format::Bag1),
             head if head.starts_with(b"SQLite format 3\0") => convert(
                 "an SQLite database, such as a rosbag2 `.db3`",
@@ -74,14 +74,6 @@ impl Format {
             head if is_tlog(head) => Ok(Format::Tlog),
             head if has_sentences(head) => Ok(Format::Nmea),
             _ => Ok(Format::Csv),
-        }
-    }
-
-    fn of_mcap(path: &Path) -> Result<Format, ImportError> {
-        match Bag::open(path) {
-            Ok(_) => Ok(Format::Squall),
-            Err(RecordingError::Foreign(_)) => Ok(Format::Mcap),
-            Err(error) => Err(file_error(path, error)),
         }
     }
 }

@@ -102,7 +102,7 @@ pub fn read(
     let mut positions = Positions::default();
     for input in inputs {
         let path = &input.path;
-        let format = Format::of(path)?;
+        let mut format = Format::of(path)?;
         let boat = input.boat.clone();
         let boat = boat
             .unwrap_or_else(|| name_of(&path.file_stem().unwrap_or_default().to_string_lossy()));
@@ -110,9 +110,12 @@ pub fn read(
             Format::Alog => alog(path)?,
             Format::Dataflash => dataflash::read(path, &boat)?,
             Format::Tlog => mavlink_log::read(path, input.boat.as_deref())?,
-            Format::Mcap => mcap::read(path, input.boat.as_deref())?,
+            Format::Mcap | Format::Squall => {
+                let (found, which) = mcap::read(path, input.boat.as_deref())?;
+                format = which;
+                found
+            }
             Format::Bag1 => bag1::read(path, input.boat.as_deref())?,
-            Format::Squall => squall::read(path)?,
             Format::Nmea => nmea::read(path, &boat)?,
             Format::Csv => csv::read(path, &boat, map)?,
         };

@@ -1,16 +1,26 @@
-//! Bags of ROS 2 in MCAP files.
+//! MCAP files: Squall's recordings, and bags of ROS 2.
 
 use crate::ros::{Bag, Encoding};
-use crate::{Found, ImportError, file_error};
+use crate::{Format, Found, ImportError, file_error, squall};
+use recording::RecordingError;
 use recording::logs::name_of;
 use std::path::Path;
 
-pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<Found, ImportError> {
+/// Reads a file, and tells which of the two it is.
+pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<(Found, Format), ImportError> {
+    match recording::Bag::open(path) {
+        Ok(bag) => {
+            let found = squall::read(bag).map_err(|error| file_error(path, error))?;
+            return Ok((found, Format::Squall));
+        }
+        Err(RecordingError::Foreign(_)) => {}
+        Err(error) => return Err(file_error(path, error)),
+    }
     let mut bag = Bag::default();
     let read = recording::Bag::for_each_foreign_message(path, |topic, schema, log_ns, bytes| {
         bag.add(topic, schema, Encoding::Cdr, 1e-9 * log_ns as f64, &bytes);
     });
     read.map_err(|error| file_error(path, error))?;
     let stem = name_of(&path.file_stem().unwrap_or_default().to_string_lossy());
-    Ok(bag.found(boat, &stem))
+    Ok((bag.found(boat, &stem), Format::Mcap))
 }

@@ -2,24 +2,22 @@
 
 use crate::mavlink_log::Vehicles;
 use crate::nmea::Sentences;
-use crate::{Found, ImportError, Quantity, file_error};
+use crate::{Found, Quantity};
 use messages::external::LinkBytes;
 use messages::input::{Input, Inputs};
 use messages::order::Order;
 use primitives::angle::compass_deg_from_rad;
-use recording::{Bag, INPUTS, Kind, Recording};
-use std::path::Path;
+use recording::{Bag, INPUTS, Kind, Recording, RecordingError};
 
-pub(crate) fn read(path: &Path) -> Result<Found, ImportError> {
-    let bag = Bag::open(path).map_err(|error| file_error(path, error))?;
+pub(crate) fn read(bag: Bag) -> Result<Found, RecordingError> {
     match bag.kind {
-        Kind::Game => game(bag).map_err(|error| file_error(path, error)),
+        Kind::Game => game(bag),
         Kind::Gateway => Ok(gateway(&bag)),
     }
 }
 
 /// The true motion of all boats, and their thrust orders.
-fn game(bag: Bag) -> Result<Found, recording::RecordingError> {
+fn game(bag: Bag) -> Result<Found, RecordingError> {
     let recording = Recording::of_bag(bag)?;
     let scenario = recording.scenario();
     let mut found = Found::default();

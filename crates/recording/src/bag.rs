@@ -156,11 +156,7 @@ impl Bag {
     /// # Errors
     /// [`RecordingError`] if it cannot be read, is not a recording, or is from a different version.
     pub fn open(path: &Path) -> Result<Bag, RecordingError> {
-        let file = |reason| RecordingError::File {
-            path: path.to_owned(),
-            reason,
-        };
-        Bag::of_source(Source::open(path).map_err(file)?)
+        Bag::of_source(source_of(path)?)
     }
 
     /// Opens a recording in memory.
@@ -172,11 +168,7 @@ impl Bag {
     }
 
     fn of_source(source: Source) -> Result<Bag, RecordingError> {
-        let source = compressed::expanded(source)?;
-        let mut found = Found::default();
-        let Extent { is_cut, damage } = for_each_record(&source, |record, place, chunk| {
-            found.take(record, &place, chunk)
-        })?;
+        let (source, mut found, Extent { is_cut, damage }) = Found::in_source(source)?;
         let (kind, facts) = found.header()?;
         let began_utc_ns = facts.get(BEGAN).map_or("", String::as_str).parse();
         let began_utc_ns =
@@ -207,15 +199,7 @@ impl Bag {
         path: &Path,
         mut take: impl FnMut(&str, &str, u64, Vec<u8>),
     ) -> Result<(), RecordingError> {
-        let file = |reason| RecordingError::File {
-            path: path.to_owned(),
-            reason,
-        };
-        let source = compressed::expanded(Source::open(path).map_err(file)?)?;
-        let mut found = Found::default();
-        for_each_record(&source, |record, place, chunk| {
-            found.take(record, &place, chunk)
-        })?;
+        let (source, found, _) = Found::in_source(source_of(path)?)?;
         for place in 0..found.index.count {
             let Some(entry) = found.index.entry(&source, place) else {
                 continue;
@@ -321,6 +305,13 @@ impl Bag {
     }
 }
 
+fn source_of(path: &Path) -> Result<Source, RecordingError> {
+    Source::open(path).map_err(|reason| RecordingError::File {
+        path: path.to_owned(),
+        reason,
+    })
+}
+
 /// Collects the contents of a file.
 #[derive(Default)]
 struct Found {
@@ -331,6 +322,16 @@ struct Found {
 }
 
 impl Found {
+    /// The contents of a file, with the file itself, decompressed.
+    fn in_source(source: Source) -> Result<(Source, Found, Extent), RecordingError> {
+        let source = compressed::expanded(source)?;
+        let mut found = Found::default();
+        let extent = for_each_record(&source, |record, place, chunk| {
+            found.take(record, &place, chunk)
+        })?;
+        Ok((source, found, extent))
+    }
+
     /// Adds a record. `place` is the byte range of a message, `chunk` the start of its chunk.
     fn take(&mut self, record: Record<'_>, place: &Range<u64>, chunk: u64) {
         self.index.add(&record, place, chunk);
