@@ -10,9 +10,6 @@ use recording::logs::name_of;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// The game whose rules and boat are used if none is given.
-const BASE: &str = "scenarios/games/pav01_vs_pav01.toml";
-
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Logs of one game or run: MOOS .alog, ArduPilot .bin, MAVLink .tlog, ROS 2 bags in MCAP,
@@ -48,7 +45,10 @@ fn input(text: &str) -> Result<Input, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let game = args.game.as_deref().unwrap_or(Path::new(BASE));
+    let game = args
+        .game
+        .as_deref()
+        .unwrap_or(Path::new(recording_file::UNKNOWN_GAME));
     let game = scenario::load(game)?;
     let datum = args.game.is_some().then_some(game.field.plan.datum);
     let imported = import::read(&args.files, args.map.as_ref(), datum)?;

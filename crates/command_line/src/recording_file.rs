@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 /// The folder in which games are recorded by default.
 pub const FOLDER: &str = "runs";
 
+/// The game whose rules and boat are used for logs of an unknown game.
+pub const UNKNOWN_GAME: &str = "scenarios/games/pav01_vs_pav01.toml";
+
 /// The recordings of games in a folder, newest first.
 pub fn runs(folder: &Path) -> Vec<PathBuf> {
     let files = std::fs::read_dir(folder)
@@ -84,7 +87,7 @@ pub fn open_any(file: &Path, to: &str) -> Result<Bag> {
     let opened = if file.is_dir() || alog::is_log(file) {
         let Logs { files, game } = logs(file)?;
         let base = game.as_deref();
-        let base = base.unwrap_or(Path::new("scenarios/games/pav01_vs_pav01.toml"));
+        let base = base.unwrap_or(Path::new(UNKNOWN_GAME));
         alog::read(&files, scenario::load(base)?, game.is_some())
     } else {
         Bag::open(file)
