@@ -108,11 +108,8 @@ const fn thrusters(
     place: fn(&mut Model) -> Option<&mut f64>,
 ) -> Parameter {
     Parameter {
-        name,
         table: "thruster",
-        key,
-        by_default: true,
-        place,
+        ..hull(name, key, true, place)
     }
 }
 
@@ -122,11 +119,8 @@ const fn water(
     place: fn(&mut Model) -> Option<&mut f64>,
 ) -> Parameter {
     Parameter {
-        name,
         table: "current",
-        key,
-        by_default: false,
-        place,
+        ..hull(name, key, false, place)
     }
 }
 
