@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The type of a fix, by its number in GGA.
-// No `Ord`: the numbers are names, and comparing them would rank dead reckoning (6) above RTK (4).
+// No `Ord`: the numbers are labels. Their order would rank dead reckoning (6) above RTK (4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct FixQuality(u8);

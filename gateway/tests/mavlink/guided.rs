@@ -445,7 +445,8 @@ fn a_lost_ground_station_stops_the_boat_after_the_time_that_rover_takes() {
         station.run(0.4);
         assert_eq!(station.ardupilot.mode(), mode, "{action}");
         assert_eq!(state(&mut station), MavState::MAV_STATE_CRITICAL);
-        // Whoever then takes control of the boat keeps it, although the station is still lost.
+        // An operator who then takes control of the boat keeps it, although the station is still
+        // lost.
         station.ardupilot.set_mode(RoverMode::Guided);
         station.run(10.0);
         assert_eq!(station.ardupilot.mode().0, RoverMode::Guided, "{action}");
