@@ -29,7 +29,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
         "Over a network, and real boats",
         &["sim", "agent", "gateway", "moos", "ros", "keys"],
     ),
-    ("Boats and seas", &["sea", "trial", "identify"]),
+    ("Boats and seas", &["sea", "trial", "identify", "gap"]),
     (
         "Files",
         &[

@@ -9,6 +9,7 @@ use command_line::explain::UsageError;
 use command_line::scenario_files::existing;
 use import::{Format, Map};
 use primitives::SimTime;
+use scenario::Boat;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -85,16 +86,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         tick: SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat))),
         segment: SimTime::from_s(args.segment_s),
     };
-    let mut log = Log::of_sheet(&sheet(args, &args.log[0])?, &boat)?;
-    for path in &args.log[1..] {
-        log.append(&Log::of_sheet(&sheet(args, path)?, &boat)?, setting.segment);
-    }
-    let named: Vec<String> = args
-        .log
-        .iter()
-        .map(|log| log.display().to_string())
-        .collect();
-    let named = named.join(", ");
+    let log = read_log(
+        &args.log,
+        (args.map.as_ref(), args.vehicle.as_deref()),
+        &boat,
+        setting.segment,
+    )?;
+    let named = named(&args.log);
     let progress = RefCell::new(Progress::without_end("steps"));
     let tell = |step: Step| {
         let left = step.rms.map_or(String::new(), |rms| {
@@ -116,13 +114,36 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The names of the logs.
+pub(crate) fn named(logs: &[PathBuf]) -> String {
+    let shown: Vec<String> = logs.iter().map(|log| log.display().to_string()).collect();
+    shown.join(", ")
+}
+
+/// The logs of a boat, one after the other.
+pub(crate) fn read_log(
+    paths: &[PathBuf],
+    columns: (Option<&Map>, Option<&str>),
+    boat: &Boat,
+    segment: SimTime,
+) -> Result<Log> {
+    let mut all: Option<Log> = None;
+    for path in paths {
+        let log = Log::of_sheet(&sheet(path, columns)?, boat)?;
+        match &mut all {
+            None => all = Some(log),
+            Some(all) => all.append(&log, segment),
+        }
+    }
+    all.context("there is no log")
+}
+
 /// The table of the log: as written by the user, or of the boat in a log of another program.
-fn sheet(args: &Args, log: &Path) -> Result<Sheet> {
-    if Format::of(log)? == Format::Csv && args.map.is_none() && args.vehicle.is_none() {
+fn sheet(log: &Path, (map, vehicle): (Option<&Map>, Option<&str>)) -> Result<Sheet> {
+    if Format::of(log)? == Format::Csv && map.is_none() && vehicle.is_none() {
         return read_sheet(log);
     }
-    let boat = args.vehicle.as_deref();
-    let table = import_command::table_of(log, args.map.as_ref(), boat)?;
+    let table = import_command::table_of(log, map, vehicle)?;
     Ok(Sheet::read(&log.display().to_string(), table.as_bytes())?)
 }
 

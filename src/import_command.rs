@@ -24,8 +24,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "GAME", value_parser = existing)]
     game: Option<PathBuf>,
     /// Columns of a CSV table, as MEANING=COLUMN or MEANING=COLUMN:UNIT, separated by commas.
-    /// Meanings: t, boat, lat, lon, x, y, heading, course, speed, surge, sway, yaw_rate, port,
-    /// starboard. Units: s, ms, us, ns, deg, rad, m, km, m_s, kn, km_h, deg_s, deg_min, rad_s, pct,
+    /// Meanings: t, boat, lat, lon, x, y, height, heading, course, speed, surge, sway, yaw_rate,
+    /// port, starboard. Units: s, ms, us, ns, deg, rad, m, km, m_s, kn, km_h, deg_s, deg_min, rad_s, pct,
     /// fraction
     #[arg(long, value_name = "MAP")]
     map: Option<Map>,
@@ -119,6 +119,16 @@ fn summary(files: &[Input], imported: &Imported) -> String {
 
 /// The table for a fit of one boat: of the only one in the log, or of the named one.
 pub(crate) fn table_of(path: &Path, map: Option<&Map>, boat: Option<&str>) -> Result<String> {
+    let (logs, boat) = logs_of(path, map, boat)?;
+    Ok(import::table(&logs, &boat))
+}
+
+/// A log, and the name of its only boat or of the named one.
+pub(crate) fn logs_of(
+    path: &Path,
+    map: Option<&Map>,
+    boat: Option<&str>,
+) -> Result<(Logs, String)> {
     let input = Input {
         path: path.to_owned(),
         boat: None,
@@ -128,7 +138,7 @@ pub(crate) fn table_of(path: &Path, map: Option<&Map>, boat: Option<&str>) -> Re
         screen::remark(note);
     }
     let boat = boat_in(&imported.logs, path, boat)?;
-    Ok(import::table(&imported.logs, &boat))
+    Ok((imported.logs, boat))
 }
 
 fn boat_in(logs: &Logs, path: &Path, wanted: Option<&str>) -> Result<String> {

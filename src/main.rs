@@ -4,6 +4,7 @@ mod both_sides;
 mod check_command;
 mod cli;
 mod game_args;
+mod gap_command;
 mod helm_text;
 mod identify_command;
 mod import_command;
@@ -104,7 +105,7 @@ enum Command {
     Whatif(whatif_command::Args),
     /// Describes and plots a sea and its effects on a boat.
     #[command(
-        after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg"
+        after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg\n  squall sea --from boat.nmea --out bay.toml"
     )]
     Sea(sea_command::Args),
     /// Drives one boat through recorded commands or a standard manoeuvre.
@@ -113,6 +114,9 @@ enum Command {
     /// Fits a boat file to recorded data, and reports the quality of the fit.
     #[command(after_help = "Examples:\n  squall identify --help")]
     Identify(identify_command::Args),
+    /// Shows where a real boat lies among simulated ones with the same commands, and what to change.
+    #[command(after_help = "Examples:\n  squall gap --help")]
+    Gap(gap_command::Args),
     /// Explains a strategy file: its modes and their behaviours.
     #[command(
         after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy pav01 --dot"
@@ -185,6 +189,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),
         Command::Identify(args) => identify_command::run(&args),
+        Command::Gap(args) => gap_command::run(&args),
         Command::Strategy(args) => strategy_command::run(&args),
         Command::Policy(args) => policy_command::run(&args),
         Command::Check(args) => check_command::run(&args),

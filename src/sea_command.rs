@@ -1,24 +1,44 @@
-//! `squall sea`: describes how a sea affects a boat, in numbers and as a plot.
+//! `squall sea`: describes how a sea affects a boat, in numbers and as a plot; and estimates a sea
+//! from a log.
 
 use crate::trial_command::usual_tick_s;
-use crate::{plot, screen, water_args};
-use anyhow::{Context, Result};
+use crate::{import_command, output_file, plot, recording_file, screen, water_args};
+use anyhow::{Context, Result, bail};
 use command_line::number::whole;
+use command_line::scenario_files::existing;
+use import::{Map, Quantity};
 use primitives::angle::compass_deg_from_rad;
 use primitives::{Ned, SimTime};
 use scenario::Boat;
 use scenario::boat::Drive;
 use scenario::sea::Sea;
 use sim::sea::{SeaModel, Summary, WaveSummary, WindSummary};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use trial::{Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
+use trial::{
+    Drift, Manoeuvre, Measured, ObservedSea, ObservedWaves, Plan, Sample, Start, Track, TrialBoat,
+};
 
 #[derive(clap::Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["sea", "from"])))]
 pub(crate) struct Args {
     /// Sea to describe: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of(scenario::Kind::SEA))]
-    sea: PathBuf,
+    sea: Option<PathBuf>,
+    /// Estimates the sea from this log of a boat that is adrift, moored or keeping station, writes
+    /// it to a file and describes it. Reads any log that `squall import` reads, if it contains
+    /// heights of a satellite receiver
+    #[arg(long, value_name = "LOG", value_parser = existing)]
+    from: Option<PathBuf>,
+    /// Boat in the log, if it contains several
+    #[arg(long, value_name = "BOAT", requires = "from")]
+    vehicle: Option<String>,
+    /// Columns of a CSV table with other names, as for `squall import`
+    #[arg(long, value_name = "MAP", requires = "from")]
+    map: Option<Map>,
+    /// Writes the estimated sea to this file [default: LOG_sea.toml in the current folder]
+    #[arg(long, value_name = "FILE", requires = "from")]
+    out: Option<PathBuf>,
     /// Boat to compute the effects for: a file, or the name of a boat in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]
     boat: String,
@@ -32,11 +52,15 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let sea = water_args::sea(&args.sea, args.seed)?;
     let boat = water_args::boat(&args.boat, args.seed);
     let (boat, _, drawn) = boat.context("cannot load the boat; choose another with --boat")?;
     water_args::tell_drawn(args.seed, &drawn);
     let tick = SimTime::from_s(usual_tick_s(&boat));
+    let (sea, spectrum) = match (&args.sea, &args.from) {
+        (Some(sea), _) => (water_args::sea(sea, args.seed)?, vec![]),
+        (None, Some(log)) => estimated(args, log, &boat, tick)?,
+        (None, None) => bail!("expected a sea or a log"),
+    };
     let field = trial::open_field();
     let summary = Summary::new(&sea, &boat, &field, args.seed);
     let drifted = drifted(&boat, &sea, tick, args.seed)?;
@@ -54,9 +78,112 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         tick,
         &args.seed.into(),
     );
-    plot::sea::write(&file, title, &sea, &model, &drifted)?;
+    plot::sea::write(&file, title, (&sea, spectrum), &model, &drifted)?;
     screen::print(&format!("plot: {}\n", file.display()));
     Ok(ExitCode::SUCCESS)
+}
+
+/// Estimates a sea from a log and writes its file; also returns the spectrum of the log's heights.
+fn estimated(
+    args: &Args,
+    log: &Path,
+    boat: &Boat,
+    tick: SimTime,
+) -> Result<(Sea, Vec<(f64, f64)>)> {
+    let (logs, vehicle) = import_command::logs_of(log, args.map.as_ref(), args.vehicle.as_deref())?;
+    let series = |quantity| {
+        logs.series(&vehicle, quantity)
+            .map_or(&[][..], Vec::as_slice)
+    };
+    let observed = ObservedSea::of(&Track {
+        height: series(Quantity::Height),
+        north: series(Quantity::North),
+        east: series(Quantity::East),
+        thrusts: [Quantity::Port, Quantity::Starboard].map(series),
+    });
+    let shown = log.display().to_string();
+    let observed = observed.with_context(|| format!("cannot estimate the sea from {shown}"))?;
+    screen::print(&observed_told(&shown, &observed));
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("{}_sea.toml", recording_file::stem(log))));
+    let write = |by_waves_m_s| {
+        output_file::write(&out, "the sea", observed.written(&shown, by_waves_m_s))?;
+        water_args::sea(&out, args.seed)
+    };
+    // First without a current, to find how far the waves alone carry the boat.
+    let sea = Sea {
+        current: Sea::at_rest().current,
+        ..write(Ned::default())?
+    };
+    let by_waves = Drift::of(&drifted(boat, &sea, tick, args.seed)?);
+    let sea = write(by_waves.map_or(Ned::default(), |drift| drift.velocity_m_s))?;
+    screen::print(&format!("estimated sea: {}\n", out.display()));
+    Ok((sea, observed.spectrum))
+}
+
+/// What the log determines, and what it does not.
+fn observed_told(log: &str, observed: &ObservedSea) -> String {
+    let undetermined = || "not determined".to_owned();
+    let [used, all] = observed.blocks;
+    let mut lines = vec![(
+        "stretches",
+        format!("{used} of {all} used, each {:.0} s", observed.block_s),
+    )];
+    let total_m2 = observed
+        .waves
+        .iter()
+        .map(|waves| waves.hs_m.value * waves.hs_m.value);
+    match observed.waves.as_slice() {
+        [] => lines.push((
+            "waves",
+            "not visible above the receiver's errors".to_owned(),
+        )),
+        [waves] => lines.push(("waves", waves_observed(waves))),
+        [first, others @ ..] => {
+            let total_m = total_m2.sum::<f64>().sqrt();
+            lines.push(("significant wave height", format!("{total_m:.2} m in all")));
+            lines.push(("  in the file", waves_observed(first)));
+            lines.extend(
+                others
+                    .iter()
+                    .map(|other| ("  not in it", waves_observed(other))),
+            );
+        }
+    }
+    let drift = observed.drift.map(|drift| {
+        let Measured { value, plus_minus } = drift.speed_m_s;
+        format!(
+            "{value:.2} ± {plus_minus:.2} m/s towards {:.0}°",
+            drift.toward_deg
+        )
+    });
+    lines.push(("drift", drift.unwrap_or_else(undetermined)));
+    if observed.noise_m > 0.0 {
+        lines.push((
+            "noise of heights, rms",
+            format!("{:.3} m", observed.noise_m),
+        ));
+    }
+    lines.push(("wind", "not determined: add it to the file".to_owned()));
+    described(&format!("sea around the boat in {log}"), &lines)
+}
+
+/// The waves around a peak: height, period and direction.
+fn waves_observed(waves: &ObservedWaves) -> String {
+    let ObservedWaves {
+        hs_m,
+        tp_s,
+        from_deg,
+    } = waves;
+    let from = from_deg.map_or("not determined".to_owned(), |from| {
+        format!("{:.0} ± {:.0}°", from.value, from.plus_minus)
+    });
+    format!(
+        "{:.2} ± {:.2} m, {:.2} ± {:.2} s, from {from}",
+        hs_m.value, hs_m.plus_minus, tp_s.value, tp_s.plus_minus
+    )
 }
 
 /// The track of a boat released at rest at the datum, pointing north, as in `squall trial
@@ -101,15 +228,15 @@ fn told(sea: &Sea, boat: &Boat, summary: &Summary, drifted: &[Sample]) -> String
         Some(wind) => lines.extend(wind_told(wind)),
     }
     lines.extend(drift_told(drifted, boat));
+    described(&format!("{} for the boat {}", sea.name, boat.name), &lines)
+}
+
+/// A heading, and lines below it.
+fn described(heading: &str, lines: &[Line]) -> String {
     let text = lines
         .iter()
         .map(|(what, value)| format!("  {what:<24}{value}\n"));
-    format!(
-        "{} for the boat {}\n{}",
-        sea.name,
-        boat.name,
-        text.collect::<String>()
-    )
+    format!("{heading}\n{}", text.collect::<String>())
 }
 
 fn waves_told(waves: &WaveSummary) -> [Line; 8] {

@@ -1,4 +1,4 @@
-//! Command line arguments for the boat and its water; shared by `trial` and `identify`.
+//! Command line arguments for the boat and its water; shared by `trial`, `identify` and `gap`.
 
 use command_line::explain::UsageError;
 use command_line::number::whole;
@@ -29,23 +29,34 @@ pub(crate) struct WaterArgs {
 impl WaterArgs {
     /// The requested sea.
     pub(crate) fn sea(&self) -> Result<Sea> {
-        let mut sea = match &self.sea {
-            Some(path) => sea(path, self.seed)?,
-            None => trial::still_sea(),
+        let (sea, drawn) = self.sea_of(self.seed)?;
+        tell_drawn(self.seed, &drawn);
+        Ok(sea)
+    }
+
+    /// The sea of another seed, and its randomised values.
+    pub(crate) fn sea_of(&self, seed: u64) -> Result<(Sea, Vec<Drawn>)> {
+        let (mut sea, drawn) = match &self.sea {
+            Some(path) => draw_sea(path, seed)?,
+            None => (trial::still_sea(), vec![]),
         };
         if let Some(speed_m_s) = self.current_m_s {
             trial::set_mean_current(&mut sea, speed_m_s, self.current_toward_deg);
         }
-        Ok(sea)
+        Ok((sea, drawn))
     }
 }
 
 /// Loads the sea in a file and prints its randomised values.
 pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
-    let drawn = scenario::draw_file::<scenario::sea::Sea>(path, seed);
-    let (sea, drawn) = drawn.with_context(|| format!("cannot load the sea {}", path.display()))?;
+    let (sea, drawn) = draw_sea(path, seed)?;
     tell_drawn(seed, &drawn);
     Ok(sea)
+}
+
+fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>)> {
+    let drawn = scenario::draw_file::<scenario::sea::Sea>(path, seed);
+    drawn.with_context(|| format!("cannot load the sea {}", path.display()))
 }
 
 /// Loads a boat from a file, or by its name in `scenarios/boats`; returns it with its file and its

@@ -1,6 +1,7 @@
 //! Plots as SVG files: panels with axes and units, each with a few lines and a legend.
 
 mod axis;
+pub(crate) mod gap;
 pub(crate) mod sea;
 pub(crate) mod trial;
 

@@ -25,17 +25,17 @@ const MARK_S: f64 = 60.0;
 /// Distance (m) below which a boat counts as not having drifted.
 const STAYS_M: f64 = 0.01;
 
-/// Draws a sea to a file: the spectrum specified in its file, the realised sea, and the track of an
-/// unsteered boat from the datum.
+/// Draws a sea to a file: the spectrum specified in its file and, if the sea is estimated, that of
+/// the log; the realised sea, and the track of an unsteered boat from the datum.
 pub(crate) fn write(
     path: &Path,
     title: String,
-    sea: &Sea,
+    (sea, measured): (&Sea, Vec<(f64, f64)>),
     model: &SeaModel,
     track: &[Sample],
 ) -> Result<()> {
     let panels = vec![
-        spectrum(sea, model),
+        spectrum(sea, model, measured),
         elevation(sea, model),
         wind(sea, model),
         drift(track),
@@ -51,7 +51,7 @@ pub(crate) fn write(
 
 /// Bars and curve are both densities: the area of a bar is the variance of the components in its
 /// band.
-fn spectrum(sea: &Sea, model: &SeaModel) -> Panel {
+fn spectrum(sea: &Sea, model: &SeaModel, measured: Vec<(f64, f64)>) -> Panel {
     let mut lines = vec![];
     let field = model.at_time(SimTime::ZERO);
     if let (Some(waves), Some(field)) = (&sea.waves, field.waves()) {
@@ -80,6 +80,9 @@ fn spectrum(sea: &Sea, model: &SeaModel) -> Panel {
                     .collect(),
             ),
         ];
+    }
+    if !measured.is_empty() {
+        lines.push(Line::of("measured", measured));
     }
     Panel::of(
         "Wave spectrum",

@@ -18,4 +18,4 @@ pub mod whatif;
 pub use estimate::Estimate;
 pub use jobs::threads;
 pub use packed::{Packed, UnpackError};
-pub use pipeline::Game;
+pub use pipeline::{Game, run_in_order};

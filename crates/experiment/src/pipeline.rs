@@ -116,6 +116,25 @@ pub(crate) fn play_in_order<K: Default, R: Send, E>(
     })
 }
 
+/// Runs what is numbered from 0 to `count` - 1 on several threads, and passes each result to `take`
+/// in order.
+pub fn run_in_order<R: Send>(
+    count: usize,
+    threads: NonZeroUsize,
+    run: impl Fn(usize) -> R + Sync,
+    mut take: impl FnMut(R),
+) {
+    let never = AtomicBool::new(false);
+    let each = |(): &mut (), i: usize, _: Stop<'_>| run(i);
+    let done = play_in_order(count, (threads, &never), each, |row| {
+        take(row);
+        Ok::<(), std::convert::Infallible>(())
+    });
+    match done {
+        Ok(()) => {}
+    }
+}
+
 /// The loop of one thread: plays the next unassigned game until none is left.
 fn work<K: Default, R>(
     (next, count): (&AtomicUsize, usize),

@@ -13,7 +13,7 @@ use trial::{Sheet, plain_head};
 /// What a column can mean: its name in `--map`, the names under which loggers write it, in lower
 /// case without unit, and the unit assumed if neither the map nor the column's name has one. The
 /// unit of times then follows from their size.
-const MEANINGS: [(&str, &[&str], &str); 14] = [
+const MEANINGS: [(&str, &[&str], &str); 15] = [
     (
         "t",
         &[
@@ -32,6 +32,7 @@ const MEANINGS: [(&str, &[&str], &str); 14] = [
     ("lon", &["lon", "lng", "long", "longitude"], "deg"),
     ("x", &["x", "east", "easting"], "m"),
     ("y", &["y", "north", "northing"], "m"),
+    ("height", &["height", "altitude", "alt"], "m"),
     (
         "heading",
         &["heading", "hdg", "hdt", "true_heading", "yaw"],
@@ -179,9 +180,10 @@ fn find(sheet: &Sheet, map: Option<&Map>, wanted: &str) -> Result<Option<Column>
 }
 
 /// The columns that are read as numbers.
-const NUMBERS: [(&str, Quantity); 7] = [
+const NUMBERS: [(&str, Quantity); 8] = [
     ("x", Quantity::X),
     ("y", Quantity::Y),
+    ("height", Quantity::Height),
     ("heading", Quantity::Heading),
     ("surge", Quantity::Surge),
     ("sway", Quantity::Sway),

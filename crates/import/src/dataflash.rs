@@ -123,6 +123,7 @@ impl Log<'_> {
             }
             // Status 3: a fix in three dimensions.
             "GPS" if number("Status").is_some_and(|status| status >= 3.0) => {
+                push(Quantity::Height, 0, number("Alt"));
                 if let Some(at) = position {
                     self.found.positions.push(self.boat, 1, at_s, at);
                 }

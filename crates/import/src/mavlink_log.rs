@@ -101,6 +101,7 @@ impl Vehicles {
                     push(Quantity::North, 1, speed * cos);
                     push(Quantity::East, 1, speed * sin);
                 }
+                push(Quantity::Height, 0, 1e-3 * f64::from(data.alt));
                 let at = place(data.lat, data.lon);
                 found.positions.push(boat, 1, at_s, at);
             }

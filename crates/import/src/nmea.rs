@@ -128,6 +128,7 @@ impl Sentences {
         };
         match sentence {
             Sentence::Gga(gga) if FixQuality::from_gga(gga.quality).is_fix() => {
+                push(Quantity::Height, 0, gga.altitude_m);
                 if let Some(at) = gga.at {
                     found.positions.push(boat, 0, at_s, at);
                 }

@@ -32,8 +32,10 @@ const NOT_BOATS: &[&str] = &[
 enum Measured {
     /// A position on the globe.
     Fix(LatLon),
-    /// Position in the frame of the odometry, x and y, m.
-    Place([f64; 2]),
+    /// Height above the ellipsoid, m.
+    Height(f64),
+    /// Position in the frame of the odometry, x, y and z, m.
+    Place([f64; 3]),
     /// Compass heading, degrees.
     Heading(f64),
     /// Velocity ahead and to starboard, m/s.
@@ -164,9 +166,11 @@ fn add_topic(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured)
         match *measured {
             Measured::Fix(at) => found.positions.push(boat, source, *at_s, at),
             // The frame of each boat's odometry is its own, so positions on the globe come first.
-            Measured::Place([x, y]) => {
+            Measured::Height(height) => push(Quantity::Height, source, height),
+            Measured::Place([x, y, height]) => {
                 push(Quantity::X, 10, x);
                 push(Quantity::Y, 10, y);
+                push(Quantity::Height, 10, height);
             }
             Measured::Heading(deg) => push(Quantity::Heading, source, deg),
             Measured::Velocity([surge, sway]) => {
@@ -289,13 +293,13 @@ impl<'a> Fields<'a> {
     fn odometry(&mut self) -> Read {
         let stamp_s = self.header()?;
         self.skip_text()?;
-        let [x, y, _] = self.f64s()?;
+        let place = self.f64s()?;
         let heading = heading(self.f64s()?);
         self.f64s::<36>()?;
         let [ahead, to_port, _] = self.f64s()?;
         let [.., yaw_rate] = self.f64s::<3>()?;
         let mut measured = vec![
-            Measured::Place([x, y]),
+            Measured::Place(place),
             Measured::Velocity([ahead, -to_port]),
             Measured::YawRate(-yaw_rate.to_degrees()),
         ];
@@ -307,11 +311,12 @@ impl<'a> Fields<'a> {
         let stamp_s = self.header()?;
         let status = i8::from_le_bytes(self.number()?);
         self.number::<2>()?;
-        let [lat_deg, lon_deg] = self.f64s()?;
+        let [lat_deg, lon_deg, height] = self.f64s()?;
         let at = LatLon { lat_deg, lon_deg };
+        let measured = vec![Measured::Fix(at), Measured::Height(height)];
         // -1: no fix.
-        let measured = (status >= 0).then_some(Measured::Fix(at));
-        Some((Some(stamp_s), measured.into_iter().collect()))
+        let has_fix = status >= 0;
+        Some((Some(stamp_s), if has_fix { measured } else { vec![] }))
     }
 
     fn imu(&mut self) -> Read {

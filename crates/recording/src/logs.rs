@@ -37,6 +37,8 @@ pub enum Quantity {
     X,
     /// North of the datum, m.
     Y,
+    /// Height above the ellipsoid, the geoid or the boat's start, m: only its changes matter.
+    Height,
     /// Compass heading, degrees.
     Heading,
     /// Speed over the ground, m/s.

@@ -4,6 +4,7 @@ use super::command::Command;
 use super::sample::Sample;
 use super::water::open_field;
 use messages::Order;
+use messages::picture::Nav;
 use primitives::frame::{self, Body};
 use primitives::{Ned, Pose, Rotation, SimTime, VehicleId};
 use scenario::boat::{Boat, Drive, Kinematic};
@@ -135,6 +136,12 @@ impl TrialBoat {
             thrusts_newton,
             command,
         }
+    }
+
+    /// What the boat's sensors measured last; `None` if it has none.
+    pub fn reading(&self) -> Option<Nav> {
+        let reading = self.world.reading(VehicleId(0))?;
+        Some(reading.nav)
     }
 
     /// The settings of the boat's two thrusters, or thrust and rudder in per cent.

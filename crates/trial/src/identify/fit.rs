@@ -174,6 +174,41 @@ pub fn fit(
     parameters: &[Parameter],
     tell: &dyn Fn(Step),
 ) -> Result<Fit, NoFit> {
+    let search = Cell::new(1);
+    let told = |rms| {
+        tell(Step {
+            searches: WEIGHINGS,
+            search: search.get(),
+            rms,
+        })
+    };
+    let mut problem = problem(boat, log, setting, parameters, &told)?;
+    let first_guess = problem.sigmas;
+    for weighing in 0..WEIGHINGS {
+        let (found, report) = LevenbergMarquardt::new()
+            .with_tol(1e-9)
+            .with_patience(20)
+            .minimize(problem);
+        problem = found;
+        if report.termination.was_usage_issue() || problem.residuals().is_none() {
+            return Err(NoFit::Search(format!("{:?}", report.termination)));
+        }
+        if weighing + 1 < WEIGHINGS {
+            search.set(weighing + 2);
+            weigh(&mut problem, &first_guess);
+        }
+    }
+    report(&problem)
+}
+
+/// The fit before its first step.
+pub(super) fn problem<'a>(
+    boat: &Boat,
+    log: &'a Log,
+    setting: &'a Setting,
+    parameters: &[Parameter],
+    tell: &'a dyn Fn(Option<f64>),
+) -> Result<Problem<'a>, NoFit> {
     let model = Model {
         boat: boat.clone(),
         current: setting.sea.current.mean_m_s,
@@ -191,41 +226,41 @@ pub fn fit(
     if log.segments(setting.segment).len() < 2 {
         return Err(NoFit::NoStart);
     }
-    let search = Cell::new(1);
-    let told = |rms| {
-        tell(Step {
-            searches: WEIGHINGS,
-            search: search.get(),
-            rms,
-        })
+    Ok(Problem::new(model, setting, log, knobs, tell))
+}
+
+/// Weighs each channel by its residuals.
+fn weigh(problem: &mut Problem<'_>, first_guess: &[f64; 6]) {
+    let sigma = |channel: usize| {
+        rms(&problem.residuals_of(channel)).max(LEAST_SIGMA * first_guess[channel])
     };
-    let mut problem = Problem::new(model, setting, log, knobs, &told);
+    let sigmas = std::array::from_fn(sigma);
+    problem.weigh(sigmas);
+}
+
+/// For each parameter, the fraction of the squared residuals that its change alone would remove, to
+/// first order.
+pub(super) fn promises(problem: &mut Problem<'_>) -> Result<Vec<f64>, NoFit> {
     let first_guess = problem.sigmas;
-    for weighing in 0..WEIGHINGS {
-        let (found, report) = LevenbergMarquardt::new()
-            .with_tol(1e-9)
-            .with_patience(20)
-            .minimize(problem);
-        problem = found;
-        if report.termination.was_usage_issue() || problem.residuals().is_none() {
-            return Err(NoFit::Search(format!("{:?}", report.termination)));
-        }
-        if weighing + 1 < WEIGHINGS {
-            search.set(weighing + 2);
-            let sigma = |channel: usize| {
-                rms(&problem.residuals_of(channel)).max(LEAST_SIGMA * first_guess[channel])
-            };
-            let sigmas = std::array::from_fn(sigma);
-            problem.weigh(sigmas);
-        }
-    }
-    report(&problem)
+    weigh(problem, &first_guess);
+    let jacobian = problem.jacobian().ok_or_else(lost)?;
+    let residuals = problem.residuals().ok_or_else(lost)?;
+    let squares = residuals.norm_squared();
+    let promise = |i: usize| {
+        let column = jacobian.column(i);
+        let along = column.dot(&residuals);
+        along * along / (column.norm_squared() * squares)
+    };
+    Ok((0..jacobian.ncols()).map(promise).collect())
+}
+
+fn lost() -> NoFit {
+    NoFit::Search("the boat's state becomes non-finite near the best fit".to_owned())
 }
 
 /// Reports the fitted parameters and their uncertainty.
 fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let at = &problem.at;
-    let lost = || NoFit::Search("the boat's state becomes non-finite near the best fit".to_owned());
     let jacobian = problem.jacobian().ok_or_else(lost)?;
     let residuals = problem.residuals().ok_or_else(lost)?;
     let (measured, fitted) = problem.sizes();
@@ -260,9 +295,7 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     Ok(Fit {
         boat: problem.model_at(at).boat,
         estimates: problem.knobs.iter().enumerate().map(estimate).collect(),
-        qualities: (0..6)
-            .filter_map(|channel| quality(problem, channel))
-            .collect(),
+        qualities: qualities(problem),
         confused,
         segments: problem.segments.len() - 1,
         measured,
@@ -333,9 +366,16 @@ fn deviations_by_segment(
 }
 
 /// The 97.5 % quantile of Student's distribution for this many segments; infinite for one.
-fn student_975(segments: usize) -> f64 {
+pub(crate) fn student_975(segments: usize) -> f64 {
     let student = StudentsT::new(0.0, 1.0, segments as f64 - 1.0);
     student.map_or(f64::INFINITY, |student| student.inverse_cdf(0.975))
+}
+
+/// The quality of each measured channel.
+pub(super) fn qualities(problem: &Problem<'_>) -> Vec<Quality> {
+    (0..6)
+        .filter_map(|channel| quality(problem, channel))
+        .collect()
 }
 
 fn quality(problem: &Problem<'_>, channel: usize) -> Option<Quality> {

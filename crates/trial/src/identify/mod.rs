@@ -4,12 +4,15 @@
 //! Read [`fit`] first; `problem` defines the minimised function.
 
 mod fit;
+mod gap;
 mod log;
 mod parameter;
 mod problem;
 mod rollout;
 
+pub(crate) use fit::student_975;
 pub use fit::{Confused, Estimate, Fit, NoFit, Quality, Step, fit, names, parameters};
+pub use gap::{Band, Change, Frames, Gap, Place, QUANTITIES, Run, TURN_DEG, changes};
 pub use log::Log;
 pub use parameter::{PARAMETERS, Parameter, WATER};
 pub use rollout::Setting;

@@ -8,7 +8,7 @@
 
 use super::log::Log;
 use super::parameter::{Knob, Model};
-use super::rollout::{Point, Setting, rollout};
+use super::rollout::{Point, Setting, View, rollout};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
@@ -134,7 +134,8 @@ impl<'a> Problem<'a> {
     fn weighed(&self, model: &Model, starts: &[Point]) -> Option<DVector<f64>> {
         let mut setting = self.setting.clone();
         setting.sea.current.mean_m_s = model.current;
-        let points = rollout(&model.boat, &setting, self.log, &self.segments, starts)?;
+        let segments = (self.segments.as_slice(), starts);
+        let points = rollout(&model.boat, &setting, self.log, segments, View::Truth)?;
         let residual = |(row, channel): &(usize, usize)| {
             (points[*row][*channel] - self.log.measured[*row][*channel]) / self.sigmas[*channel]
         };
