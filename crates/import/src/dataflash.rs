@@ -64,9 +64,7 @@ pub(crate) fn read(path: &Path, boat: &str) -> Result<Found, ImportError> {
         found.notes.push(note.to_owned());
     }
     if found.logs.series(boat, Quantity::Port).is_some() && !servos.are_known() {
-        let note =
-            "no SERVOn_FUNCTION; outputs 1 and 3 are taken for the left and the right thruster";
-        found.notes.push(note.to_owned());
+        found.notes.push(Servos::UNKNOWN.to_owned());
     }
     Ok(found)
 }

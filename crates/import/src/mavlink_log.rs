@@ -41,6 +41,7 @@ pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<Found, ImportError
         });
         rest = after;
     }
+    vehicles.note(&mut found);
     if skipped > 0 {
         found.notes.push(format!("{skipped} bytes between frames"));
     }
@@ -60,9 +61,20 @@ fn frame_length(bytes: &[u8]) -> Option<usize> {
 
 /// The servo parameters of each system.
 #[derive(Default)]
-pub(crate) struct Vehicles(BTreeMap<u8, Servos>);
+pub(crate) struct Vehicles {
+    servos: BTreeMap<u8, Servos>,
+    /// Whether outputs were read without their parameters.
+    guesses: bool,
+}
 
 impl Vehicles {
+    /// Adds a note if the servo outputs of a boat are guessed.
+    pub(crate) fn note(&self, found: &mut Found) {
+        if self.guesses {
+            found.notes.push(Servos::UNKNOWN.to_owned());
+        }
+    }
+
     /// Adds the measurements in a message of a boat.
     pub(crate) fn add(
         &mut self,
@@ -76,7 +88,7 @@ impl Vehicles {
         if *system == GROUND_STATION {
             return;
         }
-        let servos = self.0.entry(*system).or_default();
+        let servos = self.servos.entry(*system).or_default();
         let mut push = |quantity, source, value: f64| {
             if value.is_finite() {
                 found.logs.push(boat, quantity, source, (at_s, value));
@@ -124,6 +136,7 @@ impl Vehicles {
                     data.servo7_raw,
                     data.servo8_raw,
                 ];
+                self.guesses |= !servos.are_known();
                 if let Some([port, starboard]) = servos.thrusts_pct(&outputs) {
                     push(Quantity::Port, 0, port);
                     push(Quantity::Starboard, 0, starboard);

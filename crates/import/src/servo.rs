@@ -18,6 +18,10 @@ impl Servos {
         }
     }
 
+    /// The remark for a boat with thrust but without these parameters.
+    pub(crate) const UNKNOWN: &'static str =
+        "no SERVOn_FUNCTION; outputs 1 and 3 are taken for the left and the right thruster";
+
     /// Whether the log contains the functions of the outputs.
     pub(crate) fn are_known(&self) -> bool {
         self.0.keys().any(|name| name.ends_with("_FUNCTION"))

@@ -109,6 +109,7 @@ fn gateway(bag: &Bag) -> Found {
                 vehicles.add(&mut found, boat, at_s, &received);
             });
         }
+        vehicles.note(&mut found);
     }
     found
 }

@@ -17,8 +17,8 @@ use crate::mavlink::dialect::{
     GPS_RAW_INT_DATA, HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd,
     MavFrame, MavMessage, MavMissionResult, MavModeFlag, MavState, MavType,
     NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA, PositionTargetTypemask,
-    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA,
-    SYSTEM_TIME_DATA,
+    SERVO_OUTPUT_RAW_DATA, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    SYS_STATUS_DATA, SYSTEM_TIME_DATA,
 };
 use crate::mavlink::{Framer, Received, RoverMode, Writer, lat_lon};
 use crate::nmea::Mode;
@@ -35,7 +35,7 @@ const AGAIN_S: f64 = 0.5;
 /// Minimum speed of a velocity that is sent, m/s: below it the direction would be a rounding error.
 const VELOCITY_MIN_M_S: f64 = 0.01;
 /// The messages that we need from the boat: number and rate, 1/s.
-const STREAMS: [(u32, f64); 9] = [
+const STREAMS: [(u32, f64); 10] = [
     // Five times a second instead of once, so that the gateway notices quickly if someone has taken
     // over the boat, which travels two metres in a second.
     (HEARTBEAT_DATA::ID, 5.0),
@@ -48,6 +48,8 @@ const STREAMS: [(u32, f64); 9] = [
     // The set-points that the boat follows, for comparison with ours.
     (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
+    // Not used by the gateway: in its recording, they are the thrust from which a boat is identified.
+    (SERVO_OUTPUT_RAW_DATA::ID, 10.0),
 ];
 /// Interval at which the messages are requested again, s: the boat may have restarted.
 const STREAMS_AGAIN_S: f64 = 10.0;

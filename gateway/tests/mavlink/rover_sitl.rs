@@ -185,6 +185,8 @@ fn parameters_have_types_and_no_index_when_they_are_named() {
 #[test]
 fn the_throttle_of_manual_control_rests_at_zero() {
     let mut station = Station::new();
+    let interval = MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16;
+    assert_eq!(station.command(true, interval, [36.0, 1e5]), Some(0));
     station.command(true, SET_MODE, [1.0, 0.0]);
     station.command(true, ARM, [1.0, 0.0]);
     for (x, y, z, thrusts) in [
@@ -200,11 +202,22 @@ fn the_throttle_of_manual_control_rests_at_zero() {
             target: 1,
             ..Default::default()
         };
-        station.reply(&MavMessage::MANUAL_CONTROL(control));
+        let heard = station.reply(&MavMessage::MANUAL_CONTROL(control));
         let (port, starboard) = thrusts;
         assert_eq!(
             station.order,
             Order::Thrust { port, starboard },
+            "{x} {y} {z}"
+        );
+        // Outputs 1 and 3, as with the firmware's default pulses of 1100 to 1900 µs.
+        let outputs = heard.iter().rev().find_map(|message| match message {
+            MavMessage::SERVO_OUTPUT_RAW(servo) => Some([servo.servo1_raw, servo.servo3_raw]),
+            _ => None,
+        });
+        let pulse_us = |share: f64| (1500.0 + 400.0 * share) as u16;
+        assert_eq!(
+            outputs,
+            Some([port, starboard].map(pulse_us)),
             "{x} {y} {z}"
         );
     }

@@ -57,6 +57,8 @@ pub struct ArduPilot {
     streams: Streams,
     station: StationWatch,
     sensed: Sensed,
+    /// The last thruster order.
+    order: Order,
     /// The position of the first fix: the origin of the frame LOCAL_NED.
     origin: Option<Ned>,
     /// UTC at time zero, µs since 1970.
@@ -90,6 +92,7 @@ impl ArduPilot {
             streams: Streams::new(),
             station: StationWatch::default(),
             sensed: Sensed::default(),
+            order: Order::Hold,
             origin: None,
             began_us: 0,
             battery: Battery::new(Pack::BLUEBOAT, charge),
@@ -368,7 +371,8 @@ impl FrontSeat for ArduPilot {
     fn order(&mut self, now: SimTime) -> Order {
         self.check_failsafe(now);
         let order = self.commanded(now);
-        self.battery.carry_out(now, order)
+        self.order = self.battery.carry_out(now, order);
+        self.order
     }
 
     fn telemetry(&mut self, now: SimTime, out: &mut Vec<u8>) {

@@ -13,9 +13,11 @@ use crate::mavlink::dialect::{
     MISSION_CURRENT_DATA, MavAutopilot, MavBatteryFault, MavMessage, MavModeFlag,
     MavProtocolCapability, MavResult, MavState, MavSysStatusSensor, MavSysStatusSensorExtended,
     MavType, NAV_CONTROLLER_OUTPUT_DATA, POSITION_TARGET_GLOBAL_INT_DATA, PositionTargetTypemask,
-    REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA, VFR_HUD_DATA,
+    REQUEST_DATA_STREAM_DATA, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    VFR_HUD_DATA,
 };
 use ::mavlink::MessageData;
+use messages::Order;
 use primitives::SimTime;
 use primitives::angle::compass_deg_from_rad;
 use primitives::frame::Ned;
@@ -53,7 +55,11 @@ const STREAMED: [u32; 13] = [
 ];
 const INTERVAL_S: f64 = 1.0;
 /// The messages sent only on request.
-const ON_REQUEST: [u32; 2] = [HOME_POSITION_DATA::ID, AUTOPILOT_VERSION_DATA::ID];
+const ON_REQUEST: [u32; 3] = [
+    HOME_POSITION_DATA::ID,
+    AUTOPILOT_VERSION_DATA::ID,
+    SERVO_OUTPUT_RAW_DATA::ID,
+];
 
 /// The interval of each message, s, and when it is due.
 #[derive(Clone, Debug)]
@@ -161,6 +167,7 @@ impl ArduPilot {
                 time_unix_usec: self.utc_us(now),
                 time_boot_ms: boot_ms(now),
             }),
+            SERVO_OUTPUT_RAW_DATA::ID => MavMessage::SERVO_OUTPUT_RAW(self.outputs(now)?),
             BATTERY_STATUS_DATA::ID => MavMessage::BATTERY_STATUS(self.battery()),
             HOME_POSITION_DATA::ID => MavMessage::HOME_POSITION(HOME_POSITION_DATA {
                 latitude: self.home?.0,
@@ -235,6 +242,26 @@ impl ArduPilot {
                 ..VFR_HUD_DATA::default()
             }),
             _ => return None,
+        })
+    }
+
+    /// The pulses for the thrusters, outputs 1 and 3. A set-point of speed and heading is carried
+    /// out by the simulation, so its thrust is unknown here.
+    fn outputs(&self, now: SimTime) -> Option<SERVO_OUTPUT_RAW_DATA> {
+        let [port, starboard] = match self.order {
+            Order::Thrust { port, starboard } => [port, starboard],
+            Order::Hold => [0.0; 2],
+            _ => return None,
+        };
+        let pulse_us = |share: f64| match self.is_armed {
+            true => (1500.0 + 400.0 * share).round() as u16,
+            false => 0,
+        };
+        Some(SERVO_OUTPUT_RAW_DATA {
+            time_usec: boot_ms(now).wrapping_mul(1000),
+            servo1_raw: pulse_us(port),
+            servo3_raw: pulse_us(starboard),
+            ..SERVO_OUTPUT_RAW_DATA::default()
         })
     }
 
