@@ -39,6 +39,10 @@ pub(crate) struct Args {
     /// Also fits the mean current; without positions in the log, it is hard to tell from the thrust
     #[arg(long, conflicts_with_all = ["current_m_s", "current_toward_deg"])]
     fit_current: bool,
+    /// Also fits the mean wind, if the log determines it: the boat must drive and drift on several
+    /// headings
+    #[arg(long)]
+    fit_wind: bool,
     /// Length of a segment, s: the simulation restarts from the recorded data at the beginning of
     /// each one
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(1.0, 3600.0, "s"))]
@@ -77,7 +81,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let mut parameters = identify::parameters(&args.fit, &boat)?;
     if args.fit_current {
-        let names = identify::WATER.map(str::to_owned);
+        let names = identify::CURRENT.map(str::to_owned);
+        parameters.extend(identify::parameters(&names, &boat)?);
+    }
+    if args.fit_wind {
+        let names = identify::WIND.map(str::to_owned);
         parameters.extend(identify::parameters(&names, &boat)?);
     }
     let setting = Setting {
@@ -102,7 +110,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             .borrow_mut()
             .add_with(|| format!("search {} of {}{left}", step.search, step.searches));
     };
-    let fit = identify::fit(&boat, &log, &setting, &parameters, &tell);
+    let search = if args.fit_wind {
+        identify::fit_wind
+    } else {
+        identify::fit
+    };
+    let fit = search(&boat, &log, &setting, &parameters, &tell);
     progress.borrow().end();
     let fit = fit.with_context(|| format!("cannot fit the boat to {named}"))?;
     screen::print(&table(&boat.name, &named, &fit));
@@ -183,6 +196,11 @@ fn table(boat: &str, log: &str, fit: &Fit) -> String {
     if let Some((speed_m_s, toward_deg)) = fit.current() {
         text.push_str(&format!(
             "  current {speed_m_s:.2} m/s toward {toward_deg:.0}°: for trials, --current-m-s {speed_m_s:.2} --current-toward-deg {toward_deg:.0}\n"
+        ));
+    }
+    if let Some((speed_m_s, from_deg)) = fit.wind() {
+        text.push_str(&format!(
+            "  wind {speed_m_s:.1} m/s from {from_deg:.0}°, 10 m above the water: for trials, in a sea file\n"
         ));
     }
     for quality in &fit.qualities {

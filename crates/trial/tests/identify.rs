@@ -4,7 +4,7 @@
 use primitives::SimTime;
 use primitives::stream::Stream;
 use scenario::boat::{Boat, Drive};
-use scenario::sea::Sea;
+use scenario::sea::{Gusts, Sea, Wind};
 use std::path::Path;
 use trial::identify::{self, Fit, Log, NoFit, Setting};
 use trial::{Engine, Orders, Sheet, Start, TrialBoat};
@@ -202,7 +202,7 @@ fn an_unknown_current_is_found_with_the_boat() {
     let csv = log_in(&sea, &truth, &orders, (1.0, 0.0), &mut stream);
     let of_boat = identify::parameters(&[], &truth).expect("the usual ones");
     let mut names: Vec<&str> = of_boat.iter().map(|parameter| parameter.name).collect();
-    names.extend(identify::WATER);
+    names.extend(identify::CURRENT);
     let fit = fitted(&wrong(&truth), &csv, &names).unwrap_or_else(|e| panic!("{e}"));
     let (east, north) = (0.5 * 0.866_025_4, -0.25);
     for estimate in &fit.estimates {
@@ -343,4 +343,57 @@ fn a_log_that_lacks_columns_is_refused() {
         let error = Log::of_sheet(&sheet, &boat()).expect_err(head).to_string();
         assert!(error.contains(want), "{error}");
     }
+}
+
+/// A boat in 7 m/s of wind from 230°, the search for it and for the drag, and its result.
+fn found_in_wind(orders: &str) -> Result<Fit, NoFit> {
+    let truth = boat();
+    let wind = Wind {
+        speed_10m_m_s: 7.0,
+        from_rad: 230.0_f64.to_radians(),
+        profile_exponent: 0.12,
+        gusts: Gusts::None,
+    };
+    let sea = Sea {
+        wind: Some(wind),
+        ..trial::still_sea()
+    };
+    let csv = log_in(
+        &sea,
+        &truth,
+        orders,
+        (1.0, 0.0),
+        &mut Stream::new(1, "wind"),
+    );
+    let sheet = Sheet::read("log.csv", csv.as_bytes()).expect("it is CSV");
+    let log = Log::of_sheet(&sheet, &truth).unwrap_or_else(|e| panic!("{e}"));
+    let start = Boat {
+        hull: scenario::boat::Hull {
+            surge_quadratic_kg_m: 0.7 * truth.hull.surge_quadratic_kg_m,
+            ..truth.hull.clone()
+        },
+        ..truth
+    };
+    let names = ["surge_quadratic", identify::WIND[0], identify::WIND[1]];
+    let parameters = identify::parameters(&names.map(str::to_owned), &start)?;
+    identify::fit_wind(&start, &log, &setting(), &parameters, &|_| {})
+}
+
+#[test]
+fn a_wind_comes_back_unless_the_log_leaves_several() {
+    let fit = found_in_wind(&orders_csv(&mut Stream::new(1, "test")));
+    let fit = fit.unwrap_or_else(|e| panic!("{e}"));
+    let (speed_m_s, from_deg) = fit.wind().expect("it was fitted");
+    assert!((speed_m_s - 7.0).abs() < 0.1, "{speed_m_s}");
+    assert!((from_deg - 230.0).abs() < 1.0, "{from_deg}");
+    let drag = fit.estimates[0];
+    assert!(
+        (drag.value - 13.0).abs() < 2.0 * drag.plus_minus,
+        "{drag:?}"
+    );
+
+    // Straight ahead at one speed, less drag and more wind are the same.
+    let text = found_in_wind("t_s,port_pct,starboard_pct\n0,60,60\n80,60,60\n");
+    let text = text.expect_err("it is ambiguous").to_string();
+    assert!(text.contains("the log does not determine"), "{text}");
 }

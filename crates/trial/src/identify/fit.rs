@@ -1,16 +1,19 @@
 //! Searches for the parameters that best fit a log, and estimates their uncertainty.
 
 use super::log::{CHANNELS, Log, Unit};
-use super::parameter::{Knob, Model, PARAMETERS, Parameter, WATER};
-use super::problem::Problem;
+use super::parameter::{CURRENT, Knob, Model, PARAMETERS, Parameter, WIND};
+use super::problem::{Problem, set_wind};
 use super::rollout::Setting;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector};
 use primitives::Ned;
 use primitives::angle::compass_deg_from_rad;
+use primitives::math;
 use scenario::boat::Boat;
+use scenario::sea::Sea;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::cell::Cell;
+use std::f64::consts::PI;
 use thiserror::Error;
 
 /// A fitted parameter.
@@ -70,21 +73,40 @@ impl Fit {
     /// The fitted mean current: its speed (m/s) and the direction in which it flows (compass
     /// degrees); `None` if it was not fitted.
     pub fn current(&self) -> Option<(f64, f64)> {
-        let [east, north] = WATER.map(|name| {
-            let of = |estimate: &&Estimate| estimate.parameter.name == name;
-            self.estimates
-                .iter()
-                .find(of)
-                .map(|estimate| estimate.value)
-        });
-        let current = Ned {
-            east: east?,
-            north: north?,
-        };
+        let (current, _) = self.vector(CURRENT)?;
         Some((
             current.length(),
             compass_deg_from_rad(current.direction_rad()),
         ))
+    }
+
+    /// The fitted mean wind 10 m above the water: its speed (m/s) and the direction from which it
+    /// blows (compass degrees); `None` if it was not fitted.
+    pub fn wind(&self) -> Option<(f64, f64)> {
+        let (wind, _) = self.vector(WIND)?;
+        Some((
+            wind.length(),
+            compass_deg_from_rad(wind.direction_rad() + PI),
+        ))
+    }
+
+    /// A vector of the water, and the larger half of its two intervals.
+    fn vector(&self, names: [&str; 2]) -> Option<(Ned, f64)> {
+        let of = |name| {
+            let mut all = self.estimates.iter();
+            all.find(|estimate| estimate.parameter.name == name)
+        };
+        let (east, north) = (of(names[0])?, of(names[1])?);
+        let vector = Ned {
+            east: east.value,
+            north: north.value,
+        };
+        Some((vector, east.plus_minus.max(north.plus_minus)))
+    }
+
+    /// Product of the residuals of all channels: the smaller, the better the fit.
+    fn misfit(&self) -> f64 {
+        self.qualities.iter().map(|quality| quality.rms).product()
     }
 }
 
@@ -106,6 +128,11 @@ pub enum NoFit {
     /// The search did not converge.
     #[error("the search failed: {0}")]
     Search(String),
+    /// Several winds explain the log.
+    #[error(
+        "the log does not determine the wind: {0} explain it equally well; specify it in --sea"
+    )]
+    Ambiguous(String),
     /// The log does not determine some parameters.
     #[error("the log does not determine {0}; omit some of them with --fit, or record more data")]
     Undetermined(String),
@@ -115,6 +142,12 @@ pub enum NoFit {
 const CONFUSED: f64 = 0.95;
 /// Number of standard deviations below which 97.5 % of a normal distribution lie.
 const NORMAL_975: f64 = 1.96;
+/// Winds from which a search starts, m/s.
+const START_M_S: f64 = 6.0;
+/// Half an interval of the wind above which it counts as not determined, m/s.
+const VAGUE_M_S: f64 = 2.0;
+/// Ratio of misfits from which one fit is clearly better: 1 % in each of six channels.
+const CLEARLY: f64 = 1.06;
 /// Number of searches, each with channel weights from the previous residuals.
 const WEIGHINGS: usize = 3;
 /// Minimum standard deviation of a channel, as a fraction of the initial guess, because a log from
@@ -201,6 +234,72 @@ pub fn fit(
     report(&problem)
 }
 
+/// The mean wind as a velocity, m/s.
+fn wind_of(sea: &Sea) -> Ned {
+    let wind = sea.wind.as_ref();
+    wind.map_or(Ned::default(), |wind| {
+        let (sin, cos) = math::sin_cos(wind.from_rad);
+        let unit = Ned {
+            north: -cos,
+            east: -sin,
+        };
+        unit.scaled(wind.speed_10m_m_s)
+    })
+}
+
+/// Like [`fit`], with the mean wind. A wind and its opposite can explain a log almost equally well,
+/// since drag hides the difference; so the search starts from several winds, and a wind that is not
+/// clearly better than another is rejected.
+///
+/// # Errors
+/// [`NoFit::Ambiguous`] with the winds, or as [`fit`].
+pub fn fit_wind(
+    boat: &Boat,
+    log: &Log,
+    setting: &Setting,
+    parameters: &[Parameter],
+    tell: &dyn Fn(Step),
+) -> Result<Fit, NoFit> {
+    let mut fits: Vec<Fit> = vec![];
+    let mut failed = NoFit::Nothing;
+    for from_deg in [None, Some(0.0), Some(90.0), Some(180.0), Some(270.0)] {
+        let mut setting = setting.clone();
+        if let Some(from_deg) = from_deg {
+            set_wind(
+                &mut setting.sea,
+                Ned::toward_deg(from_deg + 180.0).scaled(START_M_S),
+            );
+        }
+        match fit(boat, log, &setting, parameters, tell) {
+            Ok(fit) => fits.push(fit),
+            Err(why) => failed = why,
+        }
+    }
+    fits.sort_by(|a, b| a.misfit().total_cmp(&b.misfit()));
+    let Some(best) = fits.first() else {
+        return Err(failed);
+    };
+    let wind = |fit: &Fit| fit.vector(WIND).unwrap_or_default();
+    let (best_m_s, plus_minus) = wind(best);
+    if plus_minus > VAGUE_M_S {
+        return Err(NoFit::Undetermined(WIND.join(", ")));
+    }
+    let rivals = fits.iter().filter(|fit| {
+        let (other_m_s, other_plus_minus) = wind(fit);
+        let is_elsewhere = (other_m_s - best_m_s).length() > plus_minus.min(other_plus_minus);
+        is_elsewhere && fit.misfit() < CLEARLY * best.misfit()
+    });
+    let winds: Vec<String> = std::iter::once(best)
+        .chain(rivals)
+        .filter_map(Fit::wind)
+        .map(|(speed_m_s, from_deg)| format!("{speed_m_s:.1} m/s from {from_deg:.0}°"))
+        .collect();
+    if winds.len() > 1 {
+        return Err(NoFit::Ambiguous(winds.join(", ")));
+    }
+    Ok(fits.remove(0))
+}
+
 /// The fit before its first step.
 pub(super) fn problem<'a>(
     boat: &Boat,
@@ -212,6 +311,10 @@ pub(super) fn problem<'a>(
     let model = Model {
         boat: boat.clone(),
         current: setting.sea.current.mean_m_s,
+        wind: parameters
+            .iter()
+            .any(|parameter| WIND.contains(&parameter.name))
+            .then(|| wind_of(&setting.sea)),
     };
     let knob = |parameter: &Parameter| {
         Knob::new(*parameter, &model).ok_or(NoFit::NotThere(parameter.name))

@@ -10,6 +10,8 @@ pub(super) struct Model {
     pub(super) boat: Boat,
     /// Mean current, m/s.
     pub(super) current: Ned,
+    /// Mean wind 10 m above the water, as a velocity, m/s; `None` if it is not fitted.
+    pub(super) wind: Option<Ned>,
 }
 
 /// A fittable number of a boat, or of the water.
@@ -26,13 +28,13 @@ pub struct Parameter {
     place: fn(&mut Model) -> Option<&mut f64>,
 }
 
-/// The parameters of the water: the mean current, m/s.
-// A wind cannot be added: its force is too much like the hull's own drag. In a log of four minutes,
-// a wind in the opposite direction fitted as well.
-pub const WATER: [&str; 2] = ["current_east", "current_north"];
+/// The parameters of the mean current, m/s.
+pub const CURRENT: [&str; 2] = ["current_east", "current_north"];
+/// The parameters of the mean wind, m/s. They need [`fit_wind`](super::fit_wind).
+pub const WIND: [&str; 2] = ["wind_east", "wind_north"];
 
 /// All parameters, in the order of reports.
-pub const PARAMETERS: [Parameter; 18] = [
+pub const PARAMETERS: [Parameter; 20] = [
     hull("surge_linear", "surge_linear_kg_s", true, |model| {
         Some(&mut model.boat.hull.surge_linear_kg_s)
     }),
@@ -81,9 +83,15 @@ pub const PARAMETERS: [Parameter; 18] = [
     thrusters("lag", "lag_s", |model| {
         thruster(&mut model.boat).map(|thruster| &mut thruster.lag_s)
     }),
-    water(WATER[0], "east_m_s", |model| Some(&mut model.current.east)),
-    water(WATER[1], "north_m_s", |model| {
+    water(CURRENT[0], "current", |model| Some(&mut model.current.east)),
+    water(CURRENT[1], "current", |model| {
         Some(&mut model.current.north)
+    }),
+    water(WIND[0], "wind", |model| {
+        model.wind.as_mut().map(|wind| &mut wind.east)
+    }),
+    water(WIND[1], "wind", |model| {
+        model.wind.as_mut().map(|wind| &mut wind.north)
     }),
 ];
 
@@ -115,12 +123,12 @@ const fn thrusters(
 
 const fn water(
     name: &'static str,
-    key: &'static str,
+    table: &'static str,
     place: fn(&mut Model) -> Option<&mut f64>,
 ) -> Parameter {
     Parameter {
-        table: "current",
-        ..hull(name, key, false, place)
+        table,
+        ..hull(name, "mean", false, place)
     }
 }
 
@@ -137,6 +145,7 @@ impl Parameter {
         self.value_in(&Model {
             boat: boat.clone(),
             current: Ned::default(),
+            wind: Some(Ned::default()),
         })
     }
 
@@ -146,7 +155,7 @@ impl Parameter {
 
     /// Whether it belongs to the water rather than the boat.
     pub fn is_of_water(&self) -> bool {
-        WATER.contains(&self.name)
+        CURRENT.contains(&self.name) || WIND.contains(&self.name)
     }
 }
 

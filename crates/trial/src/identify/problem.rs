@@ -11,7 +11,13 @@ use super::parameter::{Knob, Model};
 use super::rollout::{Point, Setting, View, rollout};
 use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use primitives::Ned;
+use primitives::angle::wrap_pi;
+use scenario::sea::{Gusts, Sea, Wind};
+use std::f64::consts::PI;
 
+/// The usual exponent of the wind's profile over water.
+const PROFILE_EXPONENT: f64 = 0.12;
 /// Step of a parameter's logarithm for finite differences.
 const PARAMETER_STEP: f64 = 1e-4;
 /// Step of a start for finite differences, in standard deviations of its channel.
@@ -134,6 +140,9 @@ impl<'a> Problem<'a> {
     fn weighed(&self, model: &Model, starts: &[Point]) -> Option<DVector<f64>> {
         let mut setting = self.setting.clone();
         setting.sea.current.mean_m_s = model.current;
+        if let Some(wind) = model.wind {
+            set_wind(&mut setting.sea, wind);
+        }
         let segments = (self.segments.as_slice(), starts);
         let points = rollout(&model.boat, &setting, self.log, segments, View::Truth)?;
         let residual = |(row, channel): &(usize, usize)| {
@@ -230,6 +239,21 @@ impl<'a> Problem<'a> {
             }
         }
     }
+}
+
+/// Replaces the mean wind 10 m above the water.
+pub(super) fn set_wind(sea: &mut Sea, velocity_m_s: Ned) {
+    let before = sea.wind.take().unwrap_or(Wind {
+        speed_10m_m_s: 0.0,
+        from_rad: 0.0,
+        profile_exponent: PROFILE_EXPONENT,
+        gusts: Gusts::None,
+    });
+    sea.wind = Some(Wind {
+        speed_10m_m_s: velocity_m_s.length(),
+        from_rad: wrap_pi(velocity_m_s.direction_rad() + PI),
+        ..before
+    });
 }
 
 impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
