@@ -32,7 +32,8 @@ pub(crate) struct Args {
     /// Columns of a CSV table with other names, as for `squall import`
     #[arg(long, value_name = "MAP")]
     map: Option<Map>,
-    /// Number of simulated runs, each with its own waves, gusts, sensor errors and randomised values
+    /// Number of simulated runs, each with its own waves, gusts, sensor errors and randomised
+    /// values
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = whole::<usize>(20, 10_000))]
     runs: usize,
     /// Length of a segment, s: every run restarts from the log at the beginning of each one

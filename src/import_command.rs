@@ -25,8 +25,8 @@ pub(crate) struct Args {
     game: Option<PathBuf>,
     /// Columns of a CSV table, as MEANING=COLUMN or MEANING=COLUMN:UNIT, separated by commas.
     /// Meanings: t, boat, lat, lon, x, y, height, heading, course, speed, surge, sway, yaw_rate,
-    /// port, starboard. Units: s, ms, us, ns, deg, rad, m, km, m_s, kn, km_h, deg_s, deg_min, rad_s, pct,
-    /// fraction
+    /// port, starboard. Units: s, ms, us, ns, deg, rad, m, km, m_s, kn, km_h, deg_s, deg_min,
+    /// rad_s, pct, fraction
     #[arg(long, value_name = "MAP")]
     map: Option<Map>,
 }

@@ -114,7 +114,7 @@ enum Command {
     /// Fits a boat file to recorded data, and reports the quality of the fit.
     #[command(after_help = "Examples:\n  squall identify --help")]
     Identify(identify_command::Args),
-    /// Shows where a real boat lies among simulated ones with the same commands, and what to change.
+    /// Compares a real boat with simulated ones given the same commands.
     #[command(after_help = "Examples:\n  squall gap --help")]
     Gap(gap_command::Args),
     /// Explains a strategy file: its modes and their behaviours.

@@ -31,7 +31,7 @@ SKIPPED = {
     r"squall run .*--blue imported.*|squall (strategy|policy) imported.*": "needs a model that the reader has trained",
     r"squall run .*--blue host:.*": "needs an entry of the reader's; python/tests/test_host.py has some",
     r"squall import .*": "needs the reader's logs; tests/command/import.rs has some",
-    r"squall (trial|identify) .*field\.csv.*": "needs the reader's log of a boat; tests/command/trial.rs has one",
+    r"squall (trial|identify|gap|sea) .*field\.(csv|nmea).*": "needs the reader's log of a boat; tests/command/trial.rs has one",
     r"squall keys new keys --help": "prints help; the keys page creates keys",
     r"source <\(squall completions zsh\)|squall completions fish \| source": "needs its shell; tests/terminal.py has them",
     r"squall moos .*blue_two=tcp.*": "needs the reader's own MOOSDB; tests/moos_peer.py has one",

@@ -62,8 +62,8 @@ pub struct ObservedDrift {
 /// What a log says of the sea.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservedSea {
-    /// The waves; none if the receiver's noise hides them. If a wind sea and swell have a peak each,
-    /// the higher one comes first.
+    /// The waves; none if the receiver's noise hides them. If a wind sea and swell have a peak
+    /// each, the higher one comes first.
     pub waves: Vec<ObservedWaves>,
     /// The boat's drift while its thrusters were off; `None` if it cannot be told from none.
     pub drift: Option<ObservedDrift>,

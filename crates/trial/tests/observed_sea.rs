@@ -59,7 +59,8 @@ fn afloat(waves: &Waves, seed: u64) -> Motion {
 }
 
 /// The reference is `scipy.signal.welch(height, 5, nperseg=300, detrend="linear")` for this
-/// closed form: 4 √m0 over 0.05 to 2 Hz is 0.7071 m, as is 4 √((0.2² + 0.15²) / 2); the peak is at 0.25 Hz.
+/// closed form: 4 √m0 over 0.05 to 2 Hz is 0.7071 m, as is 4 √((0.2² + 0.15²) / 2); the peak is at
+/// 0.25 Hz.
 #[test]
 fn two_sines_are_measured_as_scipy_measures_them() {
     let toward = Ned::toward_deg(120.0);

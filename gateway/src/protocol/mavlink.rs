@@ -48,7 +48,8 @@ const STREAMS: [(u32, f64); 10] = [
     // The set-points that the boat follows, for comparison with ours.
     (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
-    // Not used by the gateway: in its recording, they are the thrust from which a boat is identified.
+    // Not used by the gateway: in its recording, they are the thrust from which a boat is
+    // identified.
     (SERVO_OUTPUT_RAW_DATA::ID, 10.0),
 ];
 /// Interval at which the messages are requested again, s: the boat may have restarted.
