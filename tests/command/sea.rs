@@ -203,3 +203,48 @@ fn a_kinematic_boat_stays_in_a_gale_and_the_text_says_why() {
         "{text}"
     );
 }
+
+/// Heights of a receiver with a wave of 0.4 m and 4 s, while it drifts to the north.
+#[test]
+fn a_log_gives_a_sea_that_is_then_described() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut log = String::new();
+    for i in 0..1500_u32 {
+        let at_s = 0.2 * f64::from(i);
+        let height_m = 0.2 * primitives::math::sin_cos(std::f64::consts::TAU * at_s / 4.0).0;
+        let minutes = 30.0 + 0.1 * at_s / 1852.0;
+        let time = format!("12{:02}{:04.1}", (at_s / 60.0) as u32, at_s % 60.0);
+        let gga = format!(
+            "GPGGA,{time},54{minutes:010.7},N,01010.0,E,4,12,0.8,{:.3},M,40,M,,",
+            3.0 + height_m
+        );
+        let sum = gga.bytes().fold(0, |sum, byte| sum ^ byte);
+        log += &format!("${gga}*{sum:02X}\r\n");
+    }
+    std::fs::write(dir.path().join("buoy.nmea"), log).unwrap();
+    let said = printed(&dir, &["sea", "--from", "buoy.nmea", "--plot", "page.svg"]);
+    let observed = value(&said, "waves");
+    let [hs_m, _, tp_s, ..] = numbers(observed)[..] else {
+        panic!("{said}");
+    };
+    // 4 × 0.2 / √2.
+    assert!(
+        (hs_m - 0.57).abs() < 0.02 && (tp_s - 4.0).abs() < 0.1,
+        "{said}"
+    );
+    assert!(
+        value(&said, "drift").contains("0.10 ± 0.00 m/s towards 0°"),
+        "{said}"
+    );
+    assert!(value(&said, "wind").starts_with("not determined"), "{said}");
+    // The log has no motion along the waves.
+    assert!(observed.ends_with("from not determined"), "{said}");
+    assert!(
+        said.contains("buoy_sea for the boat surveyor_m1_8"),
+        "{said}"
+    );
+    assert_eq!(numbers(value(&said, "significant wave height")), [hs_m]);
+    let svg = std::fs::read_to_string(dir.path().join("page.svg")).unwrap();
+    assert_well_formed(&svg);
+    assert!(svg.contains("measured"));
+}

@@ -579,3 +579,29 @@ fn identify_writes_a_boat_that_check_accepts() {
     );
     trial(&dir, &["new.toml", "--manoeuvre", "acceleration"]);
 }
+
+#[test]
+fn gap_names_the_number_that_differs_and_draws_the_spread() {
+    let dir = tempfile::tempdir().unwrap();
+    log_and_start(&dir);
+    let slow = format!(
+        "base = {:?}\n[hull]\nsurge_quadratic_kg_m = 20\n",
+        boat("surveyor_m1_8")
+    );
+    std::fs::write(dir.path().join("slow.toml"), slow).unwrap();
+    let said = crate::program::printed(
+        &dir,
+        &["gap", "log.csv", "--boat", "slow.toml", "--runs", "20"],
+    );
+    let speed = said.lines().find(|line| line.starts_with("  speed"));
+    let speed = speed.unwrap_or_else(|| panic!("{said}"));
+    assert!(speed.contains(" +0.") && speed.ends_with('*'), "{said}");
+    // The log is that of a boat with 13 kg/m.
+    let advice = said.lines().find(|line| line.contains("->")).unwrap();
+    assert!(
+        advice.contains("hull.surge_quadratic_kg_m") && advice.contains("-> 13.0"),
+        "{said}"
+    );
+    let svg = std::fs::read_to_string(dir.path().join("log_gap.svg")).unwrap();
+    assert!(svg.contains("sideslip") && svg.contains("97.5 %"));
+}

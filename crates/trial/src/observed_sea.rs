@@ -123,6 +123,9 @@ const OF_NYQUIST: f64 = 0.9;
 const TAPERS: usize = 3;
 /// Least ratio of the peak to the valley before it, and to the noise.
 const CLEAR: f64 = 2.0;
+/// Least motion of a boat along the waves, as a fraction of the water's: a boat that does not move
+/// with them shows no direction.
+const MOVES: f64 = 0.05;
 /// Direction intervals wider than this say nothing, degrees.
 const VAGUE_DEG: f64 = 60.0;
 
@@ -466,7 +469,12 @@ fn part(hz: &[f64], blocks: &[&Block], range: Range<usize>, noise: f64) -> Optio
     let from = |block: &Block| {
         let toward = block.toward[range.clone()].iter();
         let toward = toward.fold(Ned::default(), |sum, toward| sum + *toward);
-        Some(compass_deg_from_rad(toward.direction_rad() + PI))
+        // In deep water, a crest moves forward as fast as the surface rises.
+        let part = hz.iter().zip(&block.density).take(range.end);
+        let part = part.skip(range.start);
+        let rising: f64 = part.map(|(hz, density)| TAU * hz * density).sum();
+        (toward.length() > MOVES * rising)
+            .then(|| compass_deg_from_rad(toward.direction_rad() + PI))
     };
     let turned = |a: f64, b: f64| wrap_pi((a - b).to_radians()).to_degrees();
     let hs_m = jackknife(blocks, height, |a, b| a - b)?;
