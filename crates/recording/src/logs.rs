@@ -171,7 +171,7 @@ impl Logs {
         let first_s = firsts.reduce(f64::min).ok_or("no boat has a position")?;
         let lasts = tracks().filter_map(|track| track.last());
         let last_s = lasts.fold(first_s, |last_s, (time_s, _)| last_s.max(*time_s));
-        let scenario = if is_known {
+        let mut scenario = if is_known {
             game
         } else {
             self.scenario(game, &boats)
@@ -186,6 +186,9 @@ impl Logs {
         let length_s = stop_s.unwrap_or(last_s) - start_s;
         if !(0.0..LENGTH_MAX_S).contains(&length_s) {
             return Err("they span more than a day: are they all from one game?".to_owned());
+        }
+        if !is_known {
+            scenario.rules.time_limit = SimTime::from_s(length_s);
         }
         let header = Header {
             commit: String::new(),

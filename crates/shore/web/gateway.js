@@ -29,6 +29,8 @@ const age = (seconds) => `${number(seconds, 1, 's')} ago`;
 export function readStatus(game, index, now_ms) {
   const { name, external } = game.vehicles[index];
   if (!external) return null;
+  // Logs of other programs contain no reports of gateways.
+  if (game.mode !== 'live' && game.statuses.size === 0) return null;
   const status = game.statuses.get(name);
   if (!status) return { name, kind: 'unknown', label: 'No gateway', detail: '', tone: 'warn', facts: [], missing: [], alarms: [], failsafes: 0, silent_s: 0, link: false };
   // A recording shows ages at the time of the report.
