@@ -70,8 +70,8 @@ pub(crate) struct ManoeuvreArgs {
     /// for 20/20)
     #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = within(1.0, 90.0, "degrees"), conflicts_with = "orders")]
     angle_deg: f64,
-    /// For a zigzag: rudder angle, or each thruster's offset from the mean thrust, per cent of full
-    /// [default: the value of --angle-deg]
+    /// For a zigzag: rudder angle, or each thruster's offset from the mean thrust, per cent of the
+    /// maximum [default: the value of --angle-deg]
     #[arg(long, value_name = "PCT", value_parser = within(1.0, 100.0, "per cent"), conflicts_with = "orders")]
     differential_pct: Option<f64>,
 }

@@ -25,7 +25,7 @@ pub(crate) enum PolicyFault {
         found: usize,
     },
     /// The network returned a non-finite value.
-    #[error("the model output a non-finite value")]
+    #[error("the model returned a non-finite value")]
     NotFinite,
 }
 

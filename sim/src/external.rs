@@ -34,7 +34,7 @@ const ABSURD_RAD_S: f64 = std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadReport {
     /// The boat is simulated.
-    #[error("the vehicle is simulated: only real boats report")]
+    #[error("the vehicle is simulated: only real boats send position reports")]
     Simulated,
     /// A number is outside its plausible range.
     #[error(

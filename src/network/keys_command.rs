@@ -19,7 +19,7 @@ pub(crate) struct Args {
 
 #[derive(clap::Subcommand)]
 enum KeysCommand {
-    /// Creates a certificate authority and a folder of keys for each part of a game.
+    /// Creates a certificate authority, and a folder of keys for each participant in a game.
     New(NewArgs),
     /// Shows the owner and validity of keys.
     Show(ShowArgs),

@@ -68,7 +68,7 @@ pub(crate) enum Command {
     /// Prints one decision of a boat's helm as a table or as CSV.
     #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --csv helm.csv")]
     Helm(helm_command::Args),
-    /// Brings real boats into games, and lets real back seats drive simulated ones.
+    /// Brings real boats into games, and lets real back seats drive simulated boats.
     #[command(
         after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help"
     )]

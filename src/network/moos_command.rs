@@ -14,8 +14,8 @@ use std::time::Duration;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Boats to connect. NAME serves a MOOSDB on the next port from --port, NAME=:PORT or
-    /// NAME=IP:PORT on that port; NAME=tcp/HOST:PORT uses a running MOOSDB
+    /// Boats to connect. NAME: serve a MOOSDB on the next port, counting from --port. NAME=:PORT or
+    /// NAME=IP:PORT: serve it on that port. NAME=tcp/HOST:PORT: use a running MOOSDB
     #[arg(long, num_args = 1.., value_name = "NAME[=ADDRESS]", value_parser = boat)]
     vehicle: Vec<(String, Option<Address>)>,
     /// Connects all boats of this team, each with its own MOOSDB
@@ -24,14 +24,14 @@ pub(crate) struct Args {
     /// First port for boats without an address
     #[arg(long, value_name = "PORT", default_value_t = 9001, value_parser = whole::<u16>(1, 65_535))]
     port: u16,
-    /// Shows the whole game to pMarineViewer in the MOOSDB at this address, for example :9000
+    /// Publishes the whole game for pMarineViewer to the MOOSDB at this address, for example :9000
     #[arg(long, value_name = "ADDRESS")]
     shore: Option<Address>,
-    /// Sends what the shoreside publishes to pShare at this address, for example shore.local:9300;
+    /// Sends to pShare at this address what the shoreside publishes, for example shore.local:9300;
     /// may be repeated
     #[arg(long, value_name = "HOST:PORT", requires = "shore")]
     pshare: Vec<String>,
-    /// Receives commands, such as DEPLOY_ALL, from pShare at this address, for example 0.0.0.0:9301
+    /// Listens on this address, such as 0.0.0.0:9301, for commands from pShare, such as DEPLOY_ALL
     #[arg(long, value_name = "IP:PORT", requires = "shore", value_parser = address)]
     pshare_listen: Option<SocketAddr>,
     #[command(flatten)]

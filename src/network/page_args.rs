@@ -30,7 +30,7 @@ pub(crate) struct PageArgs {
     /// machine can read it in the process list: prefer --page-token-file
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
-    /// File with the page's token [default: SQUALL_PAGE_TOKEN]
+    /// File with the page's token [default: the token in the variable SQUALL_PAGE_TOKEN]
     #[arg(long, value_name = "FILE", conflicts_with = "token")]
     page_token_file: Option<PathBuf>,
     /// Additional host name of the page; requires a token

@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     if args.pace.join_s < 1.0 && !args.run.in_process {
         bail!(UsageError(format!(
-            "--join-s is {} s, expected at least 1 s: the agents start with the game",
+            "--join-s is {} s, expected at least 1 s: the agents are started together with the game",
             args.pace.join_s
         )));
     }

@@ -19,8 +19,8 @@ pub struct AccessArgs {
     /// Folder with this node's keys, created by `squall keys new`; required if the game uses keys
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
-    /// File with the game's token, which `squall sim` prints [default: SQUALL_TOKEN, or the token
-    /// of the game on this machine]
+    /// File with the game's token, which `squall sim` prints [default: the token in the variable
+    /// SQUALL_TOKEN, or that of the game on this machine]
     #[arg(long, value_name = "FILE")]
     token_file: Option<PathBuf>,
 }

@@ -12,7 +12,7 @@ pub const ROW: SimTime = SimTime(100_000_000);
 /// The boat's state became non-finite.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
-    "the boat's state became non-finite at {t_s:.2} s: the model is unstable at this tick; use a shorter tick"
+    "the boat's state became non-finite at {t_s:.2} s: the model is unstable with a tick this long; use a shorter one"
 )]
 pub struct Unsound {
     /// Time of the failure, s.

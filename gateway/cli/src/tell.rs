@@ -58,7 +58,7 @@ pub(super) struct Words {
     /// For hold-heading: true heading, degrees
     #[arg(long, value_name = "DEG", value_parser = within(0.0, 360.0, "degrees"))]
     heading_deg: Option<f64>,
-    /// For hold-heading: thrust ahead, per cent of full
+    /// For hold-heading: thrust ahead, per cent of the maximum
     #[arg(long, value_name = "PCT", value_parser = within(0.0, 100.0, "per cent"))]
     thrust_pct: Option<f64>,
 }

@@ -204,7 +204,7 @@ fn what_a_policy_cannot_do_its_helm_says_and_safety_is_left() {
         (
             &scenario,
             model_of_nan(),
-            "the model output a non-finite value",
+            "the model returned a non-finite value",
         ),
         (
             &large,
