@@ -388,7 +388,12 @@ impl Logs {
 
     /// A boat's, team's or the game's last value at or before a time.
     pub fn newest(&self, whose: &str, quantity: Quantity, at_s: f64) -> Option<f64> {
-        Some(newest(self.series(whose, quantity)?, at_s)?.1)
+        Some(self.newest_at(whose, quantity, at_s)?.1)
+    }
+
+    /// The same, with its time.
+    pub fn newest_at(&self, whose: &str, quantity: Quantity, at_s: f64) -> Option<(f64, f64)> {
+        newest(self.series(whose, quantity)?, at_s)
     }
 
     /// The scenario with the boats of the logs, and a field around their tracks.

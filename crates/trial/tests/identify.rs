@@ -397,3 +397,32 @@ fn a_wind_comes_back_unless_the_log_leaves_several() {
     let text = text.expect_err("it is ambiguous").to_string();
     assert!(text.contains("the log does not determine"), "{text}");
 }
+
+/// For twelve seconds in the middle, the commands and the boat's motion are unknown.
+#[test]
+fn what_happens_in_a_gap_of_the_log_is_not_guessed() {
+    let truth = boat();
+    let csv = log_csv(
+        &truth,
+        &orders_csv(&mut Stream::new(3, "test")),
+        1.0,
+        0.0,
+        &mut Stream::new(3, "noise"),
+    );
+    let is_known = |line: &&str| {
+        let at_s = line
+            .split(',')
+            .next()
+            .and_then(|cell| cell.parse::<f64>().ok());
+        at_s.is_none_or(|at_s| !(83.0..95.0).contains(&at_s))
+    };
+    let with_gap: Vec<&str> = csv.lines().filter(is_known).collect();
+    let names = ["surge_quadratic", "yaw_quadratic"];
+    let whole = fitted(&truth, &csv, &names).unwrap_or_else(|e| panic!("{e}"));
+    let parts = fitted(&truth, &with_gap.join("\n"), &names).unwrap_or_else(|e| panic!("{e}"));
+    // A segment begins after the gap, so little more is left than the noise. If the model ran on
+    // through the gap, positions would be off by twice as much.
+    for (whole, parts) in whole.qualities.iter().zip(&parts.qualities) {
+        assert!(parts.rms < 1.5 * whole.rms, "{whole:?}, {parts:?}");
+    }
+}

@@ -223,7 +223,10 @@ pub fn fit(
             .with_patience(20)
             .minimize(problem);
         problem = found;
-        if report.termination.was_usage_issue() || problem.residuals().is_none() {
+        if problem.residuals().is_none() {
+            return Err(lost());
+        }
+        if report.termination.was_usage_issue() {
             return Err(NoFit::Search(format!("{:?}", report.termination)));
         }
         if weighing + 1 < WEIGHINGS {

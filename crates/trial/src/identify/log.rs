@@ -37,10 +37,12 @@ pub struct Log {
     /// x east, y north, heading (unwrapped), surge, sway, yaw rate; NaN for missing measurements.
     pub(super) measured: Vec<[f64; 6]>,
     pub(super) orders: Orders,
-    /// The row after the last one of each appended log.
+    /// The row after the last one of each appended log, and of each part of a log with gaps.
     ends: Vec<usize>,
 }
 
+/// Time without a row after which a segment begins, s: what happened meanwhile is unknown.
+const GAP_MAX_S: f64 = 5.0;
 /// Minimum number of rows for a fit.
 const ROWS_MIN: usize = 20;
 
@@ -94,8 +96,14 @@ impl Log {
             measured.push(cells);
         }
         unwrap_headings(&mut measured);
+        let mut steps_s: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let is_gap = |step_s: f64, usual_s: f64| step_s > f64::max(GAP_MAX_S, 3.0 * usual_s);
+        steps_s.sort_by(f64::total_cmp);
+        let usual_s = steps_s[steps_s.len() / 2];
+        let gaps =
+            (1..times_s.len()).filter(|row| is_gap(times_s[*row] - times_s[row - 1], usual_s));
         Ok(Log {
-            ends: vec![measured.len()],
+            ends: gaps.chain([measured.len()]).collect(),
             times: times_s.into_iter().map(SimTime::from_s).collect(),
             measured,
             orders,
@@ -145,7 +153,7 @@ impl Log {
             let is_first = starts
                 .last()
                 .is_none_or(|last| !self.are_of_one_log(*last, row));
-            if due && is_start(cells) && (is_first || left.0 * 2 >= segment.0) {
+            if is_start(cells) && (is_first || due && left.0 * 2 >= segment.0) {
                 starts.push(row);
             }
         }
