@@ -22,9 +22,14 @@ impl Claim {
 /// Each boat claims one target, the nearest or the first. `AtOnce`: of all boats that claim the
 /// same target, the nearest gets it; the others lose nothing and may claim again at the next check.
 /// Granted claims are ordered by target. `InTurn`: a boat gets its target unless an earlier boat
-/// has claimed it, and claims nothing else. Granted claims are ordered by boat. Ties go to the
-/// lower index.
-pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Resolution) {
+/// has claimed it and does not fail, and claims nothing else. Granted claims, failed ones included,
+/// are ordered by boat. Ties go to the lower index.
+pub(super) fn settle(
+    claims: &mut Vec<Claim>,
+    choice: TagChoice,
+    resolution: Resolution,
+    fails: impl Fn(&Claim) -> bool,
+) {
     claims.sort_unstable_by(|x, y| {
         let wanted = if choice == TagChoice::Nearest {
             x.nearer(y)
@@ -43,10 +48,9 @@ pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Res
             let mut granted = 0;
             for i in 0..claims.len() {
                 let claim = claims[i];
-                if claims[..granted]
-                    .iter()
-                    .all(|other| other.by != claim.by && other.on != claim.on)
-                {
+                let blocks =
+                    |other: &Claim| other.by == claim.by || other.on == claim.on && !fails(other);
+                if !claims[..granted].iter().any(blocks) {
                     claims[granted] = claim;
                     granted += 1;
                 }
@@ -145,6 +149,20 @@ mod tests {
                 in_turn,
                 vec![(0, 5), (1, 6)],
             ),
+            (
+                "in turn, after a failure",
+                vec![(9, 5, 1.0), (10, 5, 2.0), (11, 5, 3.0)],
+                first,
+                in_turn,
+                vec![(9, 5), (10, 5)],
+            ),
+            (
+                "the nearest fails",
+                vec![(9, 5, 1.0), (10, 5, 2.0)],
+                near,
+                at_once,
+                vec![(9, 5)],
+            ),
         ] {
             let claim = |(by, on, distance_squared)| Claim {
                 by,
@@ -152,7 +170,7 @@ mod tests {
                 distance_squared,
             };
             let mut claims: Vec<Claim> = claims.into_iter().map(claim).collect();
-            settle(&mut claims, choice, resolution);
+            settle(&mut claims, choice, resolution, |claim| claim.by == 9);
             assert_eq!(
                 claims
                     .iter()

@@ -45,7 +45,8 @@ impl Referee {
         if notes.claims.is_empty() {
             return;
         }
-        settle(&mut notes.claims, TagChoice::Nearest, self.rules.resolution);
+        let resolution = self.rules.resolution;
+        settle(&mut notes.claims, TagChoice::Nearest, resolution, |_| false);
         for claim in &notes.claims {
             let vehicle = VehicleId(claim.by);
             let flag = FlagId(claim.on as u8);

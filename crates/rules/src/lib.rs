@@ -75,13 +75,17 @@ pub struct Rules {
     /// Whether a boat is untagged on entering the untag place or while inside it.
     #[schemars(extend("default" = "entering"))]
     pub untag_on: UntagOn,
-    /// Minimum time from a boat's successful tag to its next tag, s.
+    /// Minimum time between a boat's tags, s.
     #[schemars(rename = "tag_cooldown_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "tag_cooldown", "default" = 10))]
     pub tag_cooldown: SimTime,
     /// Which of several intruders within reach is tagged.
     #[schemars(extend("default" = "nearest"))]
     pub tag_choice: TagChoice,
+    /// Probability that a tag succeeds. A failed one also starts the cooldown.
+    #[serde(default = "certain")]
+    #[schemars(!default, range(min = 0, max = 1), extend("default" = 1))]
+    pub tag_probability: f64,
     /// Order in which simultaneous actions are resolved.
     #[serde(default)]
     #[schemars(extend("default" = "at_once"))]
@@ -144,6 +148,10 @@ impl Rules {
     pub fn reach_m(&self) -> f64 {
         self.tag_radius_m.max(self.collision_distance_m)
     }
+}
+
+fn certain() -> f64 {
+    1.0
 }
 
 /// Points for a team.

@@ -7,6 +7,7 @@ use crate::field::Field;
 use primitives::frame::Leg;
 use primitives::id::{TeamId, VehicleId};
 use primitives::near::Pair;
+use primitives::reseed::TimedNoise;
 use primitives::stream::Stream;
 use primitives::time::SimTime;
 
@@ -19,6 +20,8 @@ pub struct Referee {
     pub field: Field,
     /// The team of each vehicle, by vehicle index.
     pub team_of: Vec<TeamId>,
+    /// Decides which tags succeed.
+    pub tag_noise: TimedNoise,
 }
 
 /// The requests of one boat, under rules that require them.

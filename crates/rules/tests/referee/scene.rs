@@ -1,6 +1,7 @@
 //! A scene: boats placed by hand on the 160 m by 80 m field, and judged.
 
 use primitives::near::Near;
+use primitives::reseed::Seeds;
 use primitives::stream::Stream;
 use primitives::{FlagId, Leg, Ned, SimTime, TeamId, VehicleId};
 use rules::event::{Event, TagCause};
@@ -77,6 +78,7 @@ impl Scene {
             rules,
             field,
             team_of,
+            tag_noise: Seeds::from(1).noise("tags"),
         };
         let standing = referee.start(&mut Stream::new(1, "rules"));
         let start_position = |(i, team): (usize, &TeamId)| {
