@@ -72,7 +72,7 @@ pub struct Rules {
     /// Where a tagged boat is untagged.
     #[schemars(extend("default" = "own_flag"))]
     pub untag_at: UntagAt,
-    /// Whether a boat is untagged on entering the untag place or while inside it.
+    /// What untags a boat at that place.
     #[schemars(extend("default" = "entering"))]
     pub untag_on: UntagOn,
     /// Minimum time between a boat's tags, s.
@@ -212,6 +212,8 @@ pub enum UntagOn {
     /// Being inside.
     #[serde(alias = "Inside")]
     Inside,
+    /// Nothing: it is out for the rest of the game.
+    Never,
 }
 
 /// Which of several intruders within reach is tagged.
