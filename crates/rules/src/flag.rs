@@ -38,6 +38,7 @@ impl Referee {
                         by: by as u16,
                         on: on as u16,
                         distance_squared,
+                        carries: false,
                     });
                 }
             }
@@ -90,6 +91,7 @@ impl Referee {
                     by: carrier.0,
                     on: on as u16,
                     distance_squared: 0.0,
+                    carries: false,
                 });
             }
         }

@@ -226,6 +226,8 @@ pub enum TagChoice {
     /// The first in the game's list.
     #[serde(alias = "First")]
     First,
+    /// The nearest with a flag, or else the nearest.
+    CarrierFirst,
 }
 
 /// Order in which simultaneous actions are resolved.

@@ -37,6 +37,7 @@ impl Referee {
                         by,
                         on,
                         distance_squared,
+                        carries: standing.vehicles[usize::from(on)].carrying.is_some(),
                     });
                 }
             }
