@@ -131,6 +131,10 @@ pub struct Stage {
     /// Game file with two teams of equal size; its strategies are ignored.
     #[schemars(with = "FilePath")]
     pub game: PathBuf,
+    /// Minimum and maximum team size, drawn for each team and game; for observation "squall".
+    /// Default: all boats.
+    #[schemars(inner(range(min = 1, max = 10000)))]
+    pub team_sizes: Option<[u32; 2]>,
     /// Sea file. Default: the game's.
     #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
