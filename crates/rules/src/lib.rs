@@ -90,7 +90,7 @@ pub struct Rules {
     #[serde(default)]
     #[schemars(extend("default" = "at_once"))]
     pub resolution: Resolution,
-    /// The position that determines a boat's side, for tags and captures on its own side.
+    /// Position that determines a boat's side.
     #[serde(default)]
     #[schemars(extend("default" = "after_move"))]
     pub side_judged: SideJudged,
@@ -136,7 +136,7 @@ pub struct Rules {
     #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
     #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,
-    /// Time for which one boat of each team is out of action, s; 0: no power play.
+    /// Time out of action of one boat per team, s; 0: none.
     #[schemars(rename = "power_play_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "power_play", "default" = 0))]
     pub power_play: SimTime,
