@@ -20,6 +20,8 @@ pub struct Referee {
     pub field: Field,
     /// The team of each vehicle, by vehicle index.
     pub team_of: Vec<TeamId>,
+    /// The time at which each vehicle joins the game, by vehicle index.
+    pub joins: Vec<SimTime>,
     /// Decides which tags succeed.
     pub tag_noise: TimedNoise,
 }
@@ -86,7 +88,7 @@ impl Referee {
         let at = &|i: usize| look.legs[i].to;
         let tags = is_due(look.now, self.rules.tag_look_period);
         let flags = is_due(look.now, self.rules.flag_look_period);
-        self.switch_power_plays(standing, events);
+        self.switch_disabled(standing, events);
         if tags {
             // Check the boundary first, because a boat that has left is out of the taggers' reach
             // but must still lose its flag.

@@ -75,6 +75,7 @@ impl Scene {
     /// Every boat waits on its own side, 12 m from its neighbours, out of reach of everything.
     pub(crate) fn on(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Scene {
         let referee = Referee {
+            joins: vec![SimTime::ZERO; team_of.len()],
             rules,
             field,
             team_of,

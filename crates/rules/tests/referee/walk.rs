@@ -72,6 +72,7 @@ impl Walk {
             rules: self.rules.clone(),
             field: field(extra),
             team_of: teams_of(self.boats, 2),
+            joins: vec![SimTime::ZERO; 2 * self.boats],
             tag_noise: Seeds::from(self.seed).noise("tags"),
         }
     }

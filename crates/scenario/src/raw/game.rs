@@ -83,6 +83,9 @@ pub(crate) struct Vehicle {
     pub(crate) heading_deg: Option<f64>,
     /// Instead of `at`: a random position in a rectangle.
     pub(crate) spawn: Option<Spawn>,
+    /// When it joins the game, s; until then it holds, out of action.
+    #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
+    pub(crate) joins_s: f64,
     /// Source of the boat's motion.
     #[schemars(extend("default" = "simulated"))]
     pub(crate) source: Source,
@@ -105,6 +108,9 @@ pub(crate) struct Fleet {
     pub(crate) strategy: Option<FilePath>,
     /// Random positions in a rectangle. Default: midway between their flag and the scrimmage line.
     pub(crate) spawn: Option<Spawn>,
+    /// When they join the game, s; until then they hold, out of action.
+    #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
+    pub(crate) joins_s: f64,
 }
 
 /// A rectangle for random start positions, as seen from the team's own end.
