@@ -58,6 +58,7 @@ impl Arguments {
         Ok(RawSetup {
             game: self.game,
             sea: None,
+            team_sizes: None,
             observation,
             action,
             helm: self.helm,

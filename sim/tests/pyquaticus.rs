@@ -5,6 +5,7 @@ mod common;
 
 use common::{order, started, written};
 use messages::Order;
+use primitives::reseed::Reseed;
 use primitives::{Ned, SimTime, VehicleId};
 use rules::event::TagCause;
 use rules::{Contact, Event, Rules};
@@ -117,6 +118,48 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
             "{boat}, looks every {looks_s} s: {got_s:?}, not {want_s:?}"
         );
     }
+}
+
+#[test]
+fn tags_succeed_at_random_with_the_seed_of_the_game() {
+    // Red attempts a tag at every second, with a cooldown of 2 s.
+    let mut scenario = game("mctf_2026", "surveyor", (145.0, 15.0, 0.0));
+    assert!(!scenario.is_random());
+    scenario.rules.tag_probability = 0.25;
+    assert!(scenario.is_random());
+    scenario.rules.tag_cooldown = SimTime::from_s(2.0);
+    let tagged_s = |scenario: &Scenario, seed| {
+        let mut contest = Contest::new(scenario, seed).expect("the boats fit");
+        while contest.events().is_empty() {
+            contest.advance();
+        }
+        let [first, ..] = contest.events() else {
+            panic!("no event")
+        };
+        assert!(matches!(first.event, Event::Tagged { vehicle: BLUE, .. }));
+        first.at.0 as f64 / 1e9
+    };
+    let all_s: Vec<f64> = (0..400).map(|seed| tagged_s(&scenario, seed)).collect();
+    // Geometric: attempts at 1, 3, 5, … s, on average 1 / 0.25 of them; the standard error of the
+    // mean is sqrt(1 - 0.25) / 0.25 / 20.
+    let attempts = all_s.iter().map(|s| (s + 1.0) / 2.0);
+    assert!(attempts.clone().all(|n| n.fract() == 0.0), "{all_s:?}");
+    let mean = attempts.sum::<f64>() / all_s.len() as f64;
+    assert!((mean - 4.0).abs() < 4.0 * 0.173, "{mean} attempts");
+    let again: Vec<f64> = (0..400).map(|seed| tagged_s(&scenario, seed)).collect();
+    assert_eq!(again, all_s);
+    // A later seed changes only later attempts.
+    scenario.reseed = vec![Reseed {
+        after_s: 4.0,
+        seed: 99,
+    }];
+    let reseeded = (0..400).map(|seed| tagged_s(&scenario, seed));
+    let changed = all_s.iter().zip(reseeded).filter(|(a, b)| **a != *b);
+    let changed: Vec<f64> = changed.map(|(a, b)| a.min(b)).collect();
+    assert!(
+        changed.len() > 100 && changed.iter().all(|s| *s > 4.0),
+        "{changed:?}"
+    );
 }
 
 #[test]

@@ -40,18 +40,17 @@ pub(super) fn write(
     edges(situation, out);
     goals(situation, out);
     game(situation, out);
-    let others = |is_enemy: bool| {
-        situation
-            .others()
-            .filter(move |other| other.is_enemy == is_enemy)
-    };
-    slots(situation, others(false), mates, out);
-    let mut nearest: Vec<&OtherBoat> = others(true).collect();
     let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
-    // Sort enemies by distance: the scenario's order means nothing to a policy, and if there are
-    // fewer slots than enemies, the nearest are kept. Teammates keep their slots.
-    nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    slots(situation, nearest.into_iter(), enemies, out);
+    for (is_enemy, count) in [(false, mates), (true, enemies)] {
+        let others = situation.others();
+        let mut others: Vec<_> = others.filter(|other| other.is_enemy == is_enemy).collect();
+        // Sort enemies by distance: the scenario's order means nothing to a policy, and if there
+        // are too few slots, the nearest boats are kept. Teammates that fit keep their slots.
+        if is_enemy || others.len() > count {
+            others.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        }
+        slots(situation, others.into_iter(), count, out);
+    }
 }
 
 /// Unit vectors in the team's forward and port directions.

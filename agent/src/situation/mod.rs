@@ -20,7 +20,7 @@ use messages::Picture;
 use messages::picture::OwnBoat;
 use primitives::frame::{Body, Rotation, ned_from_body};
 use primitives::{FlagId, Ned, SimTime, VehicleId};
-use rules::{Ability, TaggedBoat};
+use rules::{Ability, TaggedBoat, UntagOn};
 use scenario::Scenario;
 use scenario::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use std::cell::OnceCell;
@@ -214,8 +214,9 @@ impl Situation {
         // Use hysteresis: with a single limit, position noise would toggle the state.
         let from_home =
             self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
-        self.leaving =
-            own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
+        self.leaving = own.tagged
+            && self.model.rules.untag_on != UntagOn::Never
+            && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
     }
 
@@ -255,6 +256,13 @@ impl Situation {
         contacts.filter(|other| other.is_enemy)
     }
 
+    /// The enemies that play, or will play again.
+    fn opponents(&self) -> impl Iterator<Item = &OtherBoat> {
+        let plays_again = self.model.rules.untag_on != UntagOn::Never;
+        self.enemies()
+            .filter(move |enemy| plays_again || !enemy.tagged)
+    }
+
     /// The enemies on the team's own side that are not tagged.
     fn intruders(&self) -> impl Iterator<Item = &OtherBoat> {
         self.enemies().filter(|enemy| enemy.is_intruder())
@@ -279,7 +287,7 @@ impl Situation {
                         .total_cmp(&self.flag_distance_squared(b.at))
                 })
             }
-            Boat::NearestDefender => nearest(self.enemy_flag(), self.enemies()),
+            Boat::NearestDefender => nearest(self.enemy_flag(), self.opponents()),
             Boat::AssignedIntruder => {
                 let pairs = self
                     .interception
@@ -294,7 +302,8 @@ impl Situation {
                 let enemies = &self.model.enemies;
                 let assigned =
                     (!enemies.is_empty()).then(|| enemies[self.model.rank % enemies.len()]);
-                self.enemies().find(|enemy| Some(enemy.vehicle) == assigned)
+                self.opponents()
+                    .find(|enemy| Some(enemy.vehicle) == assigned)
             }
             Boat::NearestMate => nearest(self.at, self.mates()),
             Boat::MateCarrier => {

@@ -3,13 +3,18 @@
 use crate::scene::{Boat, decided, helm, picture, without_safety};
 use agent::HelmMind;
 use messages::picture::{OwnBoat, Picture};
+use rules::UntagOn;
 
 /// A helm that evaluates an expression at every decision.
 fn asking(expression: &str) -> HelmMind {
-    helm(&without_safety(&format!(
+    helm(&without_safety(&asks(expression)))
+}
+
+fn asks(expression: &str) -> String {
+    format!(
         "[variables]\nanswer = 0\n[[rule]]\nwhen = \"true\"\nset = {{ answer = \"{expression}\" }}\n\
          [behaviour.stop]\nkind = \"full_stop\"\n"
-    )))
+    )
 }
 
 /// The value of the expression in this scene.
@@ -64,6 +69,37 @@ fn measures_are_of_one_place_or_between_two() {
         answer(&mut asking("is_tagged(nearest_defender) ? 1 : 0"), &scene),
         1.0
     );
+}
+
+#[test]
+fn a_boat_that_is_out_for_good_stays_home_and_opponents_ignore_it() {
+    let own = Boat::at(-60.0, 0.0);
+    let enemies = [Boat::at(10.0, 0.0), Boat::at(50.0, 30.0)];
+    let mut scene = picture(0.0, [own, Boat::at(-40.0, 0.0)], enemies);
+    (scene.own[0].tagged, scene.contacts[0].tagged) = (true, true);
+    scene.contacts[1].tagged = true;
+    for (untag_on, wants) in [
+        (UntagOn::Entering, [120.0, 70.0, 50.0]),
+        (UntagOn::Never, [0.0, 1e9, 1e9]),
+    ] {
+        for (expression, want) in [
+            "distance(untag_place)",
+            "distance(opponent)",
+            "distance(nearest_defender, opponent)",
+        ]
+        .into_iter()
+        .zip(wants)
+        {
+            let mut scenario = without_safety(&asks(expression));
+            scenario.rules.untag_on = untag_on;
+            let mut helm = helm(&scenario);
+            let got = answer(&mut helm, &scene);
+            assert!(
+                (got - want).abs() < 1e-3,
+                "{expression} {untag_on:?}: {got}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -20,6 +20,7 @@ fn setup(game: &str, opponent: Player) -> Setup {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/games/{game}.toml"));
     Setup {
+        team_sizes: None,
         scenario: scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}")),
         spaces: Spaces {
             observation: ObservationSpace::Pyquaticus,

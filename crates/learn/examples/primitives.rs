@@ -89,9 +89,10 @@ fn played(mut setup: Setup, actor: &mut Actor, episodes: usize) -> Played {
         .map(|game| environment.standing(game).side)
         .collect();
     let boats_of = |game: usize| {
+        let scenario = environment.contest(game).scenario();
         environment
             .setup()
-            .pilots_of(sides[game].learner, SEED + game as u64)
+            .pilots_of(scenario, sides[game].learner, SEED + game as u64)
     };
     let boats: Vec<Vec<VehicleId>> = (0..episodes).map(|game| boats_of(game).collect()).collect();
     let mut ended = vec![false; episodes];

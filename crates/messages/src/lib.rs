@@ -83,7 +83,7 @@ pub struct VehicleTruth {
     pub tagged: bool,
     /// The flag that the boat carries, or -1.
     pub carrying: i16,
-    /// Whether the boat is out of action because of power play.
+    /// Whether the boat is out of action.
     pub disabled: bool,
     /// Whether the boat is outside the field.
     pub outside: bool,

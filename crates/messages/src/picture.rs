@@ -115,7 +115,7 @@ pub struct OwnBoat {
     pub tagged: bool,
     /// The flag that the boat carries, or -1.
     pub carrying: i16,
-    /// Whether the boat is out of action because of power play.
+    /// Whether the boat is out of action.
     pub disabled: bool,
     /// Whether the boat is outside the field.
     pub outside: bool,

@@ -8,7 +8,7 @@ use primitives::time::SimTime;
 pub struct Ability {
     /// The boat is tagged.
     pub tagged: bool,
-    /// The boat is out of action because of power play.
+    /// The boat is out of action: power play, or it has not joined yet.
     pub disabled: bool,
     /// The boat is outside the field.
     pub outside: bool,

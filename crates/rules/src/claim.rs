@@ -9,6 +9,8 @@ pub(super) struct Claim {
     pub(super) by: u16,
     pub(super) on: u16,
     pub(super) distance_squared: f64,
+    /// Whether a boat `on` carries a flag.
+    pub(super) carries: bool,
 }
 
 impl Claim {
@@ -19,17 +21,22 @@ impl Claim {
 
 /// Reduces the claims to those that succeed.
 ///
-/// Each boat claims one target, the nearest or the first. `AtOnce`: of all boats that claim the
+/// Each boat claims one target, by `choice`. `AtOnce`: of all boats that claim the
 /// same target, the nearest gets it; the others lose nothing and may claim again at the next check.
 /// Granted claims are ordered by target. `InTurn`: a boat gets its target unless an earlier boat
-/// has claimed it, and claims nothing else. Granted claims are ordered by boat. Ties go to the
-/// lower index.
-pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Resolution) {
+/// has claimed it and does not fail, and claims nothing else. Granted claims, failed ones included,
+/// are ordered by boat. Ties go to the lower index.
+pub(super) fn settle(
+    claims: &mut Vec<Claim>,
+    choice: TagChoice,
+    resolution: Resolution,
+    fails: impl Fn(&Claim) -> bool,
+) {
     claims.sort_unstable_by(|x, y| {
-        let wanted = if choice == TagChoice::Nearest {
-            x.nearer(y)
-        } else {
-            Ordering::Equal
+        let wanted = match choice {
+            TagChoice::Nearest => x.nearer(y),
+            TagChoice::First => Ordering::Equal,
+            TagChoice::CarrierFirst => y.carries.cmp(&x.carries).then(x.nearer(y)),
         };
         x.by.cmp(&y.by).then(wanted).then(x.on.cmp(&y.on))
     });
@@ -43,10 +50,9 @@ pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Res
             let mut granted = 0;
             for i in 0..claims.len() {
                 let claim = claims[i];
-                if claims[..granted]
-                    .iter()
-                    .all(|other| other.by != claim.by && other.on != claim.on)
-                {
+                let blocks =
+                    |other: &Claim| other.by == claim.by || other.on == claim.on && !fails(other);
+                if !claims[..granted].iter().any(blocks) {
                     claims[granted] = claim;
                     granted += 1;
                 }
@@ -59,108 +65,57 @@ pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Res
 #[cfg(test)]
 mod tests {
     use super::*;
+    use Resolution::{AtOnce, InTurn};
+    use TagChoice::{CarrierFirst, First, Nearest};
+
+    /// The granted claims, as boat and target. Boat 9 fails, and target 7 carries a flag.
+    fn settled(
+        claims: &[(u16, u16, f64)],
+        choice: TagChoice,
+        resolution: Resolution,
+    ) -> Vec<(u16, u16)> {
+        let claim = |&(by, on, distance_squared)| Claim {
+            by,
+            on,
+            distance_squared,
+            carries: on == 7,
+        };
+        let mut claims: Vec<Claim> = claims.iter().map(claim).collect();
+        settle(&mut claims, choice, resolution, |claim| claim.by == 9);
+        claims.iter().map(|claim| (claim.by, claim.on)).collect()
+    }
 
     #[test]
     fn each_gets_one_thing_and_each_thing_goes_to_the_nearest() {
-        let near = TagChoice::Nearest;
-        let first = TagChoice::First;
-        let at_once = Resolution::AtOnce;
-        let in_turn = Resolution::InTurn;
-        for (name, claims, choice, resolution, want) in [
-            (
-                "one reaches for two",
-                vec![(0, 5, 4.0), (0, 6, 1.0)],
-                near,
-                at_once,
-                vec![(0, 6)],
-            ),
-            (
-                "one takes the first",
-                vec![(0, 6, 1.0), (0, 5, 4.0)],
-                first,
-                at_once,
-                vec![(0, 5)],
-            ),
-            (
-                "two reach for one",
-                vec![(0, 5, 4.0), (1, 5, 1.0)],
-                near,
-                at_once,
-                vec![(1, 5)],
-            ),
-            (
-                "two reach for the first",
-                vec![(0, 5, 4.0), (1, 5, 1.0)],
-                first,
-                at_once,
-                vec![(1, 5)],
-            ),
-            (
-                "equals",
-                vec![(1, 6, 1.0), (1, 5, 1.0), (0, 5, 1.0)],
-                near,
-                at_once,
-                vec![(0, 5)],
-            ),
-            (
-                "no second choice",
-                vec![(0, 5, 1.0), (1, 5, 2.0), (1, 6, 3.0)],
-                near,
-                at_once,
-                vec![(0, 5)],
-            ),
-            (
-                "each its own",
-                vec![(1, 5, 1.0), (0, 6, 2.0)],
-                near,
-                at_once,
-                vec![(1, 5), (0, 6)],
-            ),
-            ("nobody", vec![], near, at_once, vec![]),
-            (
-                "in turn, two reach for one",
-                vec![(0, 5, 4.0), (1, 5, 1.0)],
-                near,
-                in_turn,
-                vec![(0, 5)],
-            ),
-            (
-                "in turn, one takes the nearest",
-                vec![(0, 5, 4.0), (0, 6, 1.0)],
-                near,
-                in_turn,
-                vec![(0, 6)],
-            ),
-            (
-                "in turn, one takes the first",
-                vec![(0, 6, 1.0), (0, 5, 4.0)],
-                first,
-                in_turn,
-                vec![(0, 5)],
-            ),
-            (
-                "in turn, what is left",
-                vec![(1, 5, 1.0), (1, 6, 3.0), (0, 5, 2.0)],
-                first,
-                in_turn,
-                vec![(0, 5), (1, 6)],
-            ),
-        ] {
-            let claim = |(by, on, distance_squared)| Claim {
-                by,
-                on,
-                distance_squared,
-            };
-            let mut claims: Vec<Claim> = claims.into_iter().map(claim).collect();
-            settle(&mut claims, choice, resolution);
-            assert_eq!(
-                claims
-                    .iter()
-                    .map(|claim| (claim.by, claim.on))
-                    .collect::<Vec<_>>(),
-                want,
-                "{name}"
-            );
-        }
+        let two = [(0, 5, 4.0), (0, 6, 1.0)];
+        assert_eq!(settled(&two, Nearest, AtOnce), [(0, 6)]);
+        assert_eq!(settled(&two, First, AtOnce), [(0, 5)]);
+        let carrier = [(0, 6, 1.0), (0, 7, 4.0), (1, 6, 3.0), (1, 5, 2.0)];
+        assert_eq!(settled(&carrier, CarrierFirst, AtOnce), [(1, 5), (0, 7)]);
+        let one = [(0, 5, 4.0), (1, 5, 1.0)];
+        assert_eq!(settled(&one, Nearest, AtOnce), [(1, 5)]);
+        assert_eq!(settled(&one, First, AtOnce), [(1, 5)]);
+        let equals = [(1, 6, 1.0), (1, 5, 1.0), (0, 5, 1.0)];
+        assert_eq!(settled(&equals, Nearest, AtOnce), [(0, 5)]);
+        let no_second_choice = [(0, 5, 1.0), (1, 5, 2.0), (1, 6, 3.0)];
+        assert_eq!(settled(&no_second_choice, Nearest, AtOnce), [(0, 5)]);
+        let each_its_own = [(1, 5, 1.0), (0, 6, 2.0)];
+        assert_eq!(settled(&each_its_own, Nearest, AtOnce), [(1, 5), (0, 6)]);
+        assert_eq!(settled(&[], Nearest, AtOnce), []);
+        let nearest_fails = [(9, 5, 1.0), (10, 5, 2.0)];
+        assert_eq!(settled(&nearest_fails, Nearest, AtOnce), [(9, 5)]);
+    }
+
+    #[test]
+    fn in_turn_each_gets_what_earlier_boats_leave() {
+        let one = [(0, 5, 4.0), (1, 5, 1.0)];
+        assert_eq!(settled(&one, Nearest, InTurn), [(0, 5)]);
+        let two = [(0, 5, 4.0), (0, 6, 1.0)];
+        assert_eq!(settled(&two, Nearest, InTurn), [(0, 6)]);
+        assert_eq!(settled(&two, First, InTurn), [(0, 5)]);
+        let left = [(1, 5, 1.0), (1, 6, 3.0), (0, 5, 2.0)];
+        assert_eq!(settled(&left, First, InTurn), [(0, 5), (1, 6)]);
+        let first_fails = [(9, 5, 1.0), (10, 5, 2.0), (11, 5, 3.0)];
+        assert_eq!(settled(&first_fails, First, InTurn), [(9, 5), (10, 5)]);
     }
 }

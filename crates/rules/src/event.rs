@@ -85,7 +85,7 @@ pub enum Event {
     },
     /// A boat entered the keep-out circle of its own flag.
     EnteredKeepout(VehicleId),
-    /// A boat is out of action because of power play.
+    /// A boat is out of action: power play, or it has not joined yet.
     Disabled(VehicleId),
     /// A boat is back in action.
     Enabled(VehicleId),

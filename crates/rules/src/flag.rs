@@ -38,6 +38,7 @@ impl Referee {
                         by: by as u16,
                         on: on as u16,
                         distance_squared,
+                        carries: false,
                     });
                 }
             }
@@ -45,7 +46,8 @@ impl Referee {
         if notes.claims.is_empty() {
             return;
         }
-        settle(&mut notes.claims, TagChoice::Nearest, self.rules.resolution);
+        let resolution = self.rules.resolution;
+        settle(&mut notes.claims, TagChoice::Nearest, resolution, |_| false);
         for claim in &notes.claims {
             let vehicle = VehicleId(claim.by);
             let flag = FlagId(claim.on as u8);
@@ -89,6 +91,7 @@ impl Referee {
                     by: carrier.0,
                     on: on as u16,
                     distance_squared: 0.0,
+                    carries: false,
                 });
             }
         }

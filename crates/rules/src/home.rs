@@ -25,6 +25,7 @@ impl Referee {
             let freed = match self.rules.untag_on {
                 UntagOn::Entering => boat.at_home && !was_at_home,
                 UntagOn::Inside => boat.at_home,
+                UntagOn::Never => false,
             };
             if freed && boat.tagged && boat.in_play && boat.tagged_at != standing.now {
                 boat.tagged = false;

@@ -72,21 +72,25 @@ pub struct Rules {
     /// Where a tagged boat is untagged.
     #[schemars(extend("default" = "own_flag"))]
     pub untag_at: UntagAt,
-    /// Whether a boat is untagged on entering the untag place or while inside it.
+    /// What untags a boat at that place.
     #[schemars(extend("default" = "entering"))]
     pub untag_on: UntagOn,
-    /// Minimum time from a boat's successful tag to its next tag, s.
+    /// Minimum time between a boat's tags, s.
     #[schemars(rename = "tag_cooldown_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "tag_cooldown", "default" = 10))]
     pub tag_cooldown: SimTime,
     /// Which of several intruders within reach is tagged.
     #[schemars(extend("default" = "nearest"))]
     pub tag_choice: TagChoice,
+    /// Probability that a tag succeeds. A failed one also starts the cooldown.
+    #[serde(default = "certain")]
+    #[schemars(!default, range(min = 0, max = 1), extend("default" = 1))]
+    pub tag_probability: f64,
     /// Order in which simultaneous actions are resolved.
     #[serde(default)]
     #[schemars(extend("default" = "at_once"))]
     pub resolution: Resolution,
-    /// The position that determines a boat's side, for tags and captures on its own side.
+    /// Position that determines a boat's side.
     #[serde(default)]
     #[schemars(extend("default" = "after_move"))]
     pub side_judged: SideJudged,
@@ -132,7 +136,7 @@ pub struct Rules {
     #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
     #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,
-    /// Time for which one boat of each team is out of action, s; 0: no power play.
+    /// Time out of action of one boat per team, s; 0: none.
     #[schemars(rename = "power_play_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "power_play", "default" = 0))]
     pub power_play: SimTime,
@@ -144,6 +148,10 @@ impl Rules {
     pub fn reach_m(&self) -> f64 {
         self.tag_radius_m.max(self.collision_distance_m)
     }
+}
+
+fn certain() -> f64 {
+    1.0
 }
 
 /// Points for a team.
@@ -204,6 +212,8 @@ pub enum UntagOn {
     /// Being inside.
     #[serde(alias = "Inside")]
     Inside,
+    /// Nothing: it is out for the rest of the game.
+    Never,
 }
 
 /// Which of several intruders within reach is tagged.
@@ -216,6 +226,8 @@ pub enum TagChoice {
     /// The first in the game's list.
     #[serde(alias = "First")]
     First,
+    /// The nearest with a flag, or else the nearest.
+    CarrierFirst,
 }
 
 /// Order in which simultaneous actions are resolved.

@@ -40,11 +40,9 @@ impl Referee {
         }
     }
 
-    /// Disables and enables boats according to the windows drawn at the start.
-    pub(super) fn switch_power_plays(&self, standing: &mut Standing, events: &mut Vec<Event>) {
-        if self.rules.power_play <= SimTime::ZERO {
-            return;
-        }
+    /// Disables and enables boats according to the windows drawn at the start, and boats that join
+    /// later until then.
+    pub(super) fn switch_disabled(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         for (i, (boat, (from, until))) in standing
             .vehicles
             .iter_mut()
@@ -52,7 +50,8 @@ impl Referee {
             .enumerate()
         {
             let vehicle = VehicleId::at(i);
-            let disabled = (*from..*until).contains(&standing.now);
+            let waits = standing.now < self.joins[i];
+            let disabled = waits || (*from..*until).contains(&standing.now);
             match (boat.disabled, disabled) {
                 (false, true) => events.push(Event::Disabled(vehicle)),
                 (true, false) => events.push(Event::Enabled(vehicle)),

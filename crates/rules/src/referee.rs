@@ -7,6 +7,7 @@ use crate::field::Field;
 use primitives::frame::Leg;
 use primitives::id::{TeamId, VehicleId};
 use primitives::near::Pair;
+use primitives::reseed::TimedNoise;
 use primitives::stream::Stream;
 use primitives::time::SimTime;
 
@@ -19,6 +20,10 @@ pub struct Referee {
     pub field: Field,
     /// The team of each vehicle, by vehicle index.
     pub team_of: Vec<TeamId>,
+    /// The time at which each vehicle joins the game, by vehicle index.
+    pub joins: Vec<SimTime>,
+    /// Decides which tags succeed.
+    pub tag_noise: TimedNoise,
 }
 
 /// The requests of one boat, under rules that require them.
@@ -83,7 +88,7 @@ impl Referee {
         let at = &|i: usize| look.legs[i].to;
         let tags = is_due(look.now, self.rules.tag_look_period);
         let flags = is_due(look.now, self.rules.flag_look_period);
-        self.switch_power_plays(standing, events);
+        self.switch_disabled(standing, events);
         if tags {
             // Check the boundary first, because a boat that has left is out of the taggers' reach
             // but must still lose its flag.

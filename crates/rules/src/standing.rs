@@ -43,7 +43,7 @@ pub struct VehicleStanding {
     pub at_home: bool,
     /// Whether the boat was in its own flag's keep-out circle at the last check.
     pub in_keepout: bool,
-    /// Whether the boat is out of action because of power play.
+    /// Whether the boat is out of action: power play, or it has not joined yet.
     pub disabled: bool,
 }
 

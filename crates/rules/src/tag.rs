@@ -11,8 +11,8 @@ impl Referee {
     /// it is within reach.
     ///
     /// Each tagger claims one intruder; [`super::Resolution`] decides between several taggers of
-    /// the same intruder. Only the successful tagger gets the points and the cooldown: a failed or
-    /// late tag costs nothing.
+    /// the same intruder. Only the chosen tagger gets the cooldown, and the points if the tag
+    /// succeeds: the others' tags cost nothing.
     pub(super) fn tag(
         &self,
         standing: &mut Standing,
@@ -37,6 +37,7 @@ impl Referee {
                         by,
                         on,
                         distance_squared,
+                        carries: standing.vehicles[usize::from(on)].carrying.is_some(),
                     });
                 }
             }
@@ -44,17 +45,28 @@ impl Referee {
         if notes.claims.is_empty() {
             return;
         }
+        let noise = self.tag_noise.at(standing.now);
+        // Time in nanoseconds plus a boat's index is different for every attempt: checks are at
+        // least 1 ms apart, and a boat makes one attempt per check.
+        let first = standing.now.0 as u64;
+        let fails = |claim: &Claim| {
+            noise.unit(first.wrapping_add(claim.by.into())) >= self.rules.tag_probability
+        };
         settle(
             &mut notes.claims,
             self.rules.tag_choice,
             self.rules.resolution,
+            fails,
         );
         for claim in &notes.claims {
             let tagger = VehicleId(claim.by);
             let target = VehicleId(claim.on);
+            standing.vehicles[tagger.index()].tag_ready = self.rules.tag_ready_after(standing.now);
+            if fails(claim) {
+                continue;
+            }
             standing.put_tag(target, TagCause::Opponent(tagger), events);
             standing.drop_flag(target, events);
-            standing.vehicles[tagger.index()].tag_ready = self.rules.tag_ready_after(standing.now);
             standing.award(self.team_of[tagger.index()], self.rules.points.tag);
         }
     }

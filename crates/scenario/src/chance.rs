@@ -17,6 +17,7 @@ impl Scenario {
             || self.vehicles.iter().any(starts_somewhere)
             || self.deals_roles()
             || self.rules.power_play > SimTime::ZERO
+            || is_chance(self.rules.tag_probability)
             || is_random_sea(&self.sea)
             || self.link.as_ref().is_some_and(is_random_link)
             || is_random_sharing(&self.rules.sharing)

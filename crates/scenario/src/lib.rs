@@ -256,6 +256,9 @@ pub struct Vehicle {
     /// Start position. Older recordings call this field `berth`.
     #[serde(alias = "berth")]
     pub start_position: StartPosition,
+    /// Time at which it joins the game.
+    #[serde(default)]
+    pub joins: SimTime,
     /// The source of its motion.
     pub source: Source,
 }

@@ -83,6 +83,8 @@ impl Contest {
             rules: scenario.rules.clone(),
             field: scenario.field.clone(),
             team_of,
+            joins: scenario.vehicles.iter().map(|boat| boat.joins).collect(),
+            tag_noise: scenario.seeds().noise("tags"),
         };
         let standing = referee.start(&mut Stream::new(seed, "power_play"));
         let count = scenario.vehicles.len();

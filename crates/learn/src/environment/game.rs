@@ -57,8 +57,9 @@ impl Game {
         let scenario = contest.scenario();
         let enemy = TeamId(1 - side.learner.0);
         let is_self_play = matches!(setup.opponents[side.opponent].1, Player::Policy);
-        let enemies = setup.pilots_of(enemy, seed).filter(|_| is_self_play);
-        let pilots: Vec<VehicleId> = setup.pilots_of(side.learner, seed).chain(enemies).collect();
+        let pilots_of = |team| setup.pilots_of(scenario, team, seed);
+        let enemies = pilots_of(enemy).filter(|_| is_self_play);
+        let pilots: Vec<VehicleId> = pilots_of(side.learner).chain(enemies).collect();
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
             let is_learner = scenario.team_of(vehicle) == side.learner;
             match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {

@@ -28,6 +28,8 @@ pub struct RawSetup {
     pub game: PathBuf,
     /// The sea file. `None` means the game's.
     pub sea: Option<PathBuf>,
+    /// The number of boats of a team; see [`Setup::team_sizes`].
+    pub team_sizes: Option<[u32; 2]>,
     /// The policies' observations.
     pub observation: RawObservation,
     /// The policies' actions.
@@ -95,6 +97,7 @@ impl RawSetup {
                 decisions_per_step(decision_s, &scenario)
             })?;
         let setup = Setup {
+            team_sizes: self.team_sizes,
             spaces: Spaces {
                 observation: self.observation.check(&scenario)?,
                 action: self.action,

@@ -4,10 +4,12 @@ use super::truth;
 use crate::rewards::Rewards;
 use crate::training::CriticInput;
 use agent::{ActionSpace, Spaces};
+use primitives::stream::Stream;
 use primitives::{TeamId, VehicleId};
 use scenario::policy::PolicyModel;
 use scenario::strategy::{Program, Strategy, Task};
 use scenario::{Problems, Scenario};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use thiserror::Error;
 
@@ -47,6 +49,9 @@ pub enum Player {
 pub struct Setup {
     /// The game; the seed chooses its random values.
     pub scenario: Scenario,
+    /// The minimum and maximum number of boats of a team, drawn for each team and game; the last
+    /// boats of the team are left out. `None`: all boats play.
+    pub team_sizes: Option<[u32; 2]>,
     /// The policies' observation and action spaces.
     pub spaces: Spaces,
     /// How actions reach the boats.
@@ -148,10 +153,11 @@ impl Setup {
         if self.scenario.teams.len() != 2 {
             return Err(SetupError::Teams(self.scenario.teams.len()));
         }
-        let [one, other] = [0, 1].map(|team| self.boats_of(TeamId(team)).count());
+        let [one, other] = [0, 1].map(|team| boats_of(&self.scenario, TeamId(team)).count());
         if one != other {
             return Err(SetupError::Uneven(one, other));
         }
+        self.check_team_sizes(one)?;
         if !self.opponents.iter().any(|(weight, _)| *weight > 0.0) {
             return Err(SetupError::NoOpponent);
         }
@@ -162,6 +168,56 @@ impl Setup {
             return Err(wrong("action", "options", allowed));
         }
         Ok(())
+    }
+
+    fn check_team_sizes(&self, boats: usize) -> Result<(), SetupError> {
+        let Some([least, most]) = self.team_sizes else {
+            return Ok(());
+        };
+        if !(1 <= least && least <= most && most as usize <= boats) {
+            let allowed = format!("two ascending numbers from 1 to {boats}, the game's team size");
+            return Err(wrong("team_sizes", format!("[{least}, {most}]"), &allowed));
+        }
+        if self.spaces.observation.edition().is_some() || self.critic == CriticInput::Truth {
+            let allowed =
+                "observation \"squall\" and critic \"observation\", which fit teams of any size";
+            return Err(wrong("team_sizes", format!("[{least}, {most}]"), allowed));
+        }
+        Ok(())
+    }
+
+    /// The game with this seed, with the teams' sizes drawn.
+    ///
+    /// # Errors
+    /// [`SetupError`] if the seed's random values are inconsistent.
+    pub fn scenario_of(&self, seed: u64) -> Result<Cow<'_, Scenario>, SetupError> {
+        let Some([least, most]) = self.team_sizes else {
+            return Ok(Cow::Borrowed(&self.scenario));
+        };
+        let mut scenario = self.scenario.of_seed(seed)?;
+        // Nothing is left to draw, and drawing again would bring the other boats back.
+        scenario.recipe = None;
+        let mut stream = Stream::new(seed, "team_sizes");
+        let kept = [0, 1].map(|team| {
+            let size = u64::from(least) + stream.below(u64::from(most - least) + 1);
+            boats_of(&scenario, TeamId(team))
+                .take(size as usize)
+                .collect::<Vec<_>>()
+        });
+        let mut kept = kept.concat();
+        kept.sort_unstable();
+        let vehicles = kept
+            .iter()
+            .map(|vehicle| scenario.vehicles[vehicle.index()].clone());
+        scenario.vehicles = vehicles.collect();
+        for fault in &mut scenario.faults {
+            let left = fault
+                .vehicles
+                .iter()
+                .filter_map(|boat| kept.binary_search(boat).ok());
+            fault.vehicles = left.map(VehicleId::at).collect();
+        }
+        Ok(Cow::Owned(scenario))
     }
 
     /// Checks that every role of the strategy applies the policy's choices.
@@ -224,7 +280,8 @@ impl Setup {
         let of_team = if self.mates.is_some() {
             1
         } else {
-            self.team_size()
+            self.team_sizes
+                .map_or(self.team_size(), |[_, most]| most as usize)
         };
         let is_self_play = self
             .opponents
@@ -234,27 +291,24 @@ impl Setup {
     }
 
     /// The boats of a team that a policy controls in the game with this seed.
-    pub fn pilots_of(&self, team: TeamId, seed: u64) -> impl Iterator<Item = VehicleId> {
+    pub fn pilots_of(
+        &self,
+        scenario: &Scenario,
+        team: TeamId,
+        seed: u64,
+    ) -> impl Iterator<Item = VehicleId> {
         // Sides alternate with every seed, boats with every second seed.
-        let one = self
-            .mates
-            .is_some()
-            .then(|| (seed / 2) as usize % self.team_size().max(1));
-        self.boats_of(team)
+        let size = boats_of(scenario, team).count().max(1);
+        let one = self.mates.is_some().then(|| (seed / 2) as usize % size);
+        boats_of(scenario, team)
             .enumerate()
             .filter(move |(i, _)| one.is_none_or(|one| one == *i))
             .map(|(_, vehicle)| vehicle)
     }
 
-    /// The boats of a team, in the scenario's order.
-    pub fn boats_of(&self, team: TeamId) -> impl Iterator<Item = VehicleId> {
-        let boats = (0..self.scenario.vehicles.len()).map(VehicleId::at);
-        boats.filter(move |vehicle| self.scenario.team_of(*vehicle) == team)
-    }
-
-    /// The number of boats in a team.
+    /// The number of boats in a team of the game file.
     pub fn team_size(&self) -> usize {
-        self.boats_of(TeamId(0)).count()
+        boats_of(&self.scenario, TeamId(0)).count()
     }
 
     /// The names of the values of an observation.
@@ -292,4 +346,10 @@ impl Setup {
         let boats = self.team_size();
         self.spaces.observation.size(boats.saturating_sub(1), boats)
     }
+}
+
+/// The boats of a team, in the scenario's order.
+fn boats_of(scenario: &Scenario, team: TeamId) -> impl Iterator<Item = VehicleId> {
+    let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
+    boats.filter(move |vehicle| scenario.team_of(*vehicle) == team)
 }

@@ -46,7 +46,7 @@ impl Starts {
         let place = index.map(|index| &self.made[index as usize]);
         let contest = match place.and_then(OnceLock::get) {
             Some(contest) => contest.clone(),
-            None => Contest::new(&setup.scenario, seed)?,
+            None => Contest::new(setup.scenario_of(seed)?.as_ref(), seed)?,
         };
         if let Some(place) = place {
             place.get_or_init(|| contest.clone());

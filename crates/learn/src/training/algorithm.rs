@@ -69,7 +69,7 @@ pub struct Ppo {
     /// Initial step size of the optimiser.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// Fraction of the step size left at the end of the last stage; it falls linearly.
+    /// Final fraction of the step size; it falls linearly.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.1))]
     pub learning_rate_end: f32,
     /// Limit of the relative change of an action's probability.

@@ -37,7 +37,7 @@ pub struct Training {
     /// Games played in parallel.
     #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub games: u32,
-    /// Random seed. Together with file and version it determines every bit of the weights.
+    /// Random seed.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// The networks.
@@ -101,8 +101,7 @@ pub struct League {
     #[schemars(range(min = 1, max = 1000), extend("default" = 20))]
     pub most: usize,
     /// Opponents are drawn in proportion to this power of their fraction of wins; 0: uniformly
-    /// (prioritised fictitious self-play, Vinyals and others, Nature 2019). Every opponent has a
-    /// small minimum weight.
+    /// (prioritised fictitious self-play, Vinyals and others, Nature 2019).
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub priority: f64,
 }
@@ -113,7 +112,7 @@ pub struct Evaluation {
     /// Samples between evaluations.
     #[schemars(range(min = 1000, max = 1_000_000_000), extend("default" = 200_000))]
     pub every_samples: u64,
-    /// Games per opponent, half of them on each side, always with the same seeds.
+    /// Games per opponent, half on each side, with fixed seeds.
     #[schemars(range(min = 2, max = 100_000), extend("default" = 20))]
     pub games: u32,
     /// Strategy files of the opponents, in the game of the last stage. The best policy wins the
@@ -131,6 +130,10 @@ pub struct Stage {
     /// Game file with two teams of equal size; its strategies are ignored.
     #[schemars(with = "FilePath")]
     pub game: PathBuf,
+    /// Minimum and maximum team size, drawn for each team and game; for observation "squall".
+    /// Default: all boats.
+    #[schemars(inner(range(min = 1, max = 10000)))]
+    pub team_sizes: Option<[u32; 2]>,
     /// Sea file. Default: the game's.
     #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
@@ -141,20 +144,20 @@ pub struct Stage {
     /// Default: none, actions are orders.
     #[schemars(with = "Option<FilePath>")]
     pub helm: Option<PathBuf>,
-    /// Strategy that plays the policy's boats in this stage; the policy imitates it (behaviour
-    /// cloning), and the critic learns its returns. Default: none.
+    /// Strategy that the policy imitates (behaviour cloning) and whose returns the critic learns.
+    /// Default: none.
     pub teacher: Option<Teacher>,
     /// Strategy file of teammates: the policy drives one boat at a time, in turn. Default: none,
     /// the policy drives all.
     #[schemars(with = "Option<FilePath>")]
     pub mates: Option<PathBuf>,
-    /// Relative frequency of the policy itself as the opponent.
+    /// Weight of the policy itself as opponent.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub self_play: f64,
-    /// Relative frequency of past policies as the opponent, in total.
+    /// Total weight of past policies as opponents.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub past_selves: f64,
-    /// Relative frequency of the strategies in `opponent`, in total.
+    /// Total weight of the strategies in `opponent`.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 1))]
     pub strategies: f64,
     /// Strategies as opponents.
@@ -167,7 +170,7 @@ pub struct Stage {
     /// Maximum duration of an episode, s. Default: whole games.
     #[schemars(range(min = 1, max = 86400))]
     pub episode_max_s: Option<f64>,
-    /// Samples after which the stage ends.
+    /// Length, in samples.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
     pub samples: u64,
     /// Fraction of games won in an evaluation that ends the stage early; draws count half. Default:

@@ -2,7 +2,9 @@
 
 use super::fixture::{begun, checked, file, raw, strategy};
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
-use learn::environment::{Control, Player, RawSetup, Setup, Teacher, VectorEnvironment};
+use learn::environment::{
+    Control, Player, RawObservation, RawSetup, Setup, Teacher, VectorEnvironment,
+};
 use learn::rewards::{Potential, Rewards, Worth};
 use learn::training::CriticInput;
 use messages::{Order, Picture};
@@ -227,6 +229,93 @@ fn a_game_is_the_one_that_the_arena_plays() {
         let outcome = arena::play_watched(&setup.scenario, minds, seed, goes_on).unwrap();
         assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
     }
+}
+
+#[test]
+fn team_sizes_are_drawn_for_every_game_and_rows_without_a_boat_do_not_count() {
+    let setup = checked(&RawSetup {
+        game: file("games/fleet_20v20.toml"),
+        observation: RawObservation::Space(ObservationSpace::Squall {
+            mates: 3,
+            enemies: 6,
+            frames: 1,
+        }),
+        opponents: vec![(1.0, None), (1.0, Some(file("strategies/pav01.toml")))],
+        team_sizes: Some([1, 6]),
+        episode_max_s: Some(0.5),
+        ..raw()
+    });
+    let mut environment = begun(setup, 1, 1, 0);
+    let size = environment.setup().observation_size();
+    assert_eq!((size, environment.rows().1), (44 + 9 * 16, 12));
+    let mut drawn = [[0; 7]; 2];
+    let mut unequal = 0;
+    for _ in 0..600 {
+        let scenario = environment.contest(0).scenario();
+        let of_team = |team| {
+            scenario
+                .vehicles
+                .iter()
+                .filter(|v| v.team == TeamId(team))
+                .count()
+        };
+        let sizes = [of_team(0), of_team(1)];
+        (0..2).for_each(|team| drawn[team][sizes[team]] += 1);
+        unequal += u32::from(sizes[0] != sizes[1]);
+        let standing = environment.standing(0);
+        let learner = standing.side.learner.index();
+        let enemies = if standing.side.opponent == 0 {
+            sizes[1 - learner]
+        } else {
+            0
+        };
+        let boats = environment.boats(0);
+        assert_eq!(boats.len(), sizes[learner] + enemies);
+        let teams = boats.iter().map(|boat| scenario.team_of(*boat).index());
+        assert!(teams.eq((0..boats.len()).map(|i| if i < sizes[learner] {
+            learner
+        } else {
+            1 - learner
+        })));
+        let counts = environment.counts();
+        assert!(
+            (0..12).all(|row| counts[row] == (row < boats.len())),
+            "{sizes:?}"
+        );
+        // Each slot of another boat begins with whether it is known; the distance comes fourth.
+        let at = |boat: usize| environment.contest(0).world().state().boats[boat].pose.at;
+        for (row, observation) in environment.observations().chunks_exact(size).enumerate() {
+            let known: f32 = observation[44..].iter().step_by(16).sum();
+            let Some(me) = boats.get(row) else {
+                assert_eq!(known, 0.0);
+                continue;
+            };
+            let team = scenario.team_of(*me);
+            let size = sizes[team.index()];
+            let enemies = scenario.vehicles.len() - size;
+            assert_eq!(known, (enemies + (size - 1).min(3)) as f32);
+            let mates = (0..scenario.vehicles.len()).map(VehicleId::at);
+            let mates = mates.filter(|mate| mate != me && scenario.team_of(*mate) == team);
+            let mut want_m: Vec<f64> = mates
+                .map(|mate| at(mate.index()).distance(at(me.index())))
+                .collect();
+            // With too few slots, the nearest teammates are seen, within the errors of receivers.
+            want_m.sort_by(f64::total_cmp);
+            for (i, want_m) in want_m.iter().enumerate().take(3).filter(|_| size > 4) {
+                let off_m = 100.0 * f64::from(observation[44 + 16 * i + 3]) - want_m;
+                assert!(off_m.abs() < 10.0, "mate {i} of {size}: {off_m} m");
+            }
+        }
+        environment.step(&[Action::Discrete(4); 12]).unwrap();
+    }
+    // 100 of each size are expected; 5 standard deviations are 46. Unequal are five of six.
+    assert!(
+        drawn
+            .iter()
+            .all(|sizes| sizes[1..].iter().all(|n| (54..146).contains(n))),
+        "{drawn:?}"
+    );
+    assert!((454..546).contains(&unequal), "{unequal}");
 }
 
 #[test]

@@ -57,6 +57,7 @@ pub(crate) fn raw() -> RawSetup {
     RawSetup {
         game: file("games/pyquaticus_2v2.toml"),
         sea: None,
+        team_sizes: None,
         observation: RawObservation::Squall { frames: 2 },
         action: ActionSpace::Pyquaticus,
         helm: None,

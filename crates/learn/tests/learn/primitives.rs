@@ -39,7 +39,11 @@ fn the_gains_of_a_place_add_up_to_what_it_is_worth_where_a_boat_has_come_to() {
         let seed = contest.scenario().seed;
         let boats: Vec<VehicleId> = environment
             .setup()
-            .pilots_of(environment.standing(game).side.learner, seed)
+            .pilots_of(
+                contest.scenario(),
+                environment.standing(game).side.learner,
+                seed,
+            )
             .collect();
         place.of(&progress(contest, true)[boats[place_of].index()])
     };

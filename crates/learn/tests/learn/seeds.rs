@@ -2,8 +2,8 @@
 //! it.
 
 use super::fixture::{checked, file, raw, written};
-use agent::Action;
-use learn::environment::{Games, RawObservation, RawSetup, SetupError};
+use agent::{Action, ObservationSpace};
+use learn::environment::{CriticInput, Games, RawObservation, RawSetup, SetupError};
 use primitives::TeamId;
 
 fn games(raw: &RawSetup, count: usize, seed: u64) -> Games {
@@ -252,6 +252,33 @@ fn what_is_wrong_with_a_setup_is_said() {
         .check()
         .is_err()
     );
+}
+
+#[test]
+fn team_sizes_must_fit_the_game_and_the_spaces() {
+    let pyquaticus = RawObservation::Space(ObservationSpace::Pyquaticus);
+    let squall = raw().observation;
+    let sizes = "expected two ascending numbers from 1 to 2, the game's team size";
+    let spaces = "expected observation \"squall\" and critic \"observation\"";
+    for (team_sizes, observation, critic, message) in [
+        ([1, 3], squall, CriticInput::Observation, sizes),
+        ([2, 1], squall, CriticInput::Observation, sizes),
+        ([0, 1], squall, CriticInput::Observation, sizes),
+        ([1, 2], squall, CriticInput::Truth, spaces),
+        ([1, 2], pyquaticus, CriticInput::Observation, spaces),
+    ] {
+        let raw = RawSetup {
+            team_sizes: Some(team_sizes),
+            observation,
+            critic,
+            ..raw()
+        };
+        let error = raw.check().map(|_| ()).map_err(|error| error.to_string());
+        assert!(
+            error.as_ref().is_err_and(|error| error.contains(message)),
+            "{team_sizes:?}: {error:?}"
+        );
+    }
 }
 
 #[test]

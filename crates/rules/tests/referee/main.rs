@@ -5,5 +5,6 @@ mod out_of_play;
 mod power_play;
 mod preset;
 mod scene;
+mod tag_probability;
 mod told;
 mod walk;

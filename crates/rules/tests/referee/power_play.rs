@@ -75,6 +75,24 @@ fn the_same_stream_draws_the_same_and_a_short_game_is_shared_out() {
 }
 
 #[test]
+fn a_reinforcement_holds_until_it_joins_even_in_power_play() {
+    let mut scene = Scene::new(mctf_2026(), 2);
+    scene.standing.disabled = vec![(SimTime::from_s(15.0), SimTime::from_s(25.0)); 4];
+    scene.referee.joins[3] = SimTime::from_s(20.0);
+    assert_eq!(
+        scene.put(0, 60.0, 40.0).put(1, 60.0, 60.0).look(),
+        [disabled(3)]
+    );
+    assert_eq!(scene.directive(3), Directive::Hold);
+    assert_eq!(scene.directive(2), Directive::Free { speed_factor: 1.0 });
+    let all = [disabled(0), disabled(1), disabled(2)];
+    assert_eq!(scene.wait(15.0).look(), all);
+    assert_eq!(scene.wait(9.8).look(), []);
+    let all: Vec<Event> = (0..4).map(|i| Event::Enabled(VehicleId(i))).collect();
+    assert_eq!(scene.look(), all);
+}
+
+#[test]
 fn a_boat_out_of_action_holds_and_neither_tags_nor_grabs_but_can_be_tagged() {
     let mut scene = Scene::new(mctf_2026(), 2);
     scene.standing.disabled = vec![(SimTime::NEVER, SimTime::NEVER); 4];

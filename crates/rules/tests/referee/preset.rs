@@ -43,6 +43,11 @@ pub(crate) fn aquaticus_2023() -> Rules {
     SHIPPED[0].clone()
 }
 
+/// Pyquaticus: sequential resolution.
+pub(crate) fn pyquaticus() -> Rules {
+    SHIPPED[1].clone()
+}
+
 /// The 2026 competition: corners instead of flags, no keep-out, power play.
 pub(crate) fn mctf_2026() -> Rules {
     SHIPPED[3].clone()

@@ -1,6 +1,7 @@
 //! A scene: boats placed by hand on the 160 m by 80 m field, and judged.
 
 use primitives::near::Near;
+use primitives::reseed::Seeds;
 use primitives::stream::Stream;
 use primitives::{FlagId, Leg, Ned, SimTime, TeamId, VehicleId};
 use rules::event::{Event, TagCause};
@@ -74,9 +75,11 @@ impl Scene {
     /// Every boat waits on its own side, 12 m from its neighbours, out of reach of everything.
     pub(crate) fn on(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Scene {
         let referee = Referee {
+            joins: vec![SimTime::ZERO; team_of.len()],
             rules,
             field,
             team_of,
+            tag_noise: Seeds::from(1).noise("tags"),
         };
         let standing = referee.start(&mut Stream::new(1, "rules"));
         let start_position = |(i, team): (usize, &TeamId)| {

@@ -4,6 +4,7 @@ use crate::mirror::Mirror;
 use crate::preset;
 use crate::scene::{TICK, field, flag, teams_of};
 use primitives::near::{Near, Pair};
+use primitives::reseed::Seeds;
 use primitives::stream::Stream;
 use primitives::{FlagId, Leg, Ned, SimTime, TeamId, VehicleId};
 use proptest::prelude::*;
@@ -71,6 +72,8 @@ impl Walk {
             rules: self.rules.clone(),
             field: field(extra),
             team_of: teams_of(self.boats, 2),
+            joins: vec![SimTime::ZERO; 2 * self.boats],
+            tag_noise: Seeds::from(self.seed).noise("tags"),
         }
     }
 

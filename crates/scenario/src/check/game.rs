@@ -31,6 +31,7 @@ pub(super) struct Entry {
     /// The start position in its file; `None` means on the team's line.
     pub(super) start_position: Option<StartPosition>,
     pub(super) heading_deg: Option<f64>,
+    joins_s: f64,
     source: Source,
 }
 
@@ -94,6 +95,7 @@ impl ScenarioFile for Scenario {
                 boat: entry.boat,
                 strategy: entry.strategy,
                 start_position,
+                joins: SimTime::from_s(entry.joins_s),
                 source: entry.source,
             });
         let vehicles: Vec<Vehicle> = vehicles.collect();
@@ -349,6 +351,7 @@ impl Fleet<'_> {
                 strategy,
                 start_position: stated.flatten(),
                 heading_deg: raw.heading_deg,
+                joins_s: raw.joins_s,
                 source: if is_simulated {
                     Source::Simulated
                 } else {
@@ -400,6 +403,7 @@ impl Fleet<'_> {
                 strategy,
                 start_position: start_position.clone(),
                 heading_deg: None,
+                joins_s: raw.joins_s,
                 source: Source::Simulated,
             });
         }

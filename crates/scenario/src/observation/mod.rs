@@ -24,7 +24,7 @@ pub enum ObservationSpace {
     Pyquaticus2026,
     /// Squall's own values: sensor and radio data, in a frame that is the same for both teams.
     Squall {
-        /// Number of teammates with a slot.
+        /// Number of teammates with a slot; if there are more, the nearest.
         #[schemars(range(min = 0, max = 255))]
         mates: u8,
         /// Number of enemies with a slot, nearest first.

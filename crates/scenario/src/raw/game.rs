@@ -18,7 +18,7 @@ pub struct Game {
     pub(crate) rules: FilePath,
     /// Sea file. Default: fresh water at rest.
     pub(crate) sea: Option<FilePath>,
-    /// Default boat file, for vehicles that name none.
+    /// Default boat file.
     pub(crate) boat: Option<FilePath>,
     /// Radio links between minds and boats. Default: no delay, no loss.
     #[schemars(extend("x-drawn" = true))]
@@ -29,7 +29,7 @@ pub struct Game {
     /// Random seed; each gives a different game.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub(crate) seed: u64,
-    /// Seeds that replace `seed` during the game, in chronological order.
+    /// Later seeds, in chronological order.
     #[schemars(length(max = 1000), extend("default" = []))]
     pub(crate) reseed: Vec<Reseed>,
     /// Duration of the game, s. Default: `time_limit_s` of the rules.
@@ -41,10 +41,10 @@ pub struct Game {
     /// Time between decisions of a mind, s; a multiple of `tick_s`.
     #[schemars(range(min = 0.001, max = 10), extend("default" = 0.1))]
     pub(crate) decision_s: f64,
-    /// Lockstep: wall-clock time that the sim waits for a mind before treating it as lost, s.
+    /// Lockstep: wall-clock time after which a silent mind counts as lost, s.
     #[schemars(range(min = 0.001, max = 3600), extend("default" = 5))]
     pub(crate) patience_s: f64,
-    /// In real-time games: maximum age of an order, in simulated seconds, before the boat holds.
+    /// Real time: maximum age of an order before the boat holds, s.
     #[schemars(range(min = 0.01, max = 3600), extend("default" = 1))]
     pub(crate) order_ttl_s: f64,
     /// The two teams; the first has the end at the field's `corner`.
@@ -75,7 +75,7 @@ pub(crate) struct Vehicle {
     pub(crate) boat: Option<FilePath>,
     /// Strategy, by path or name. Default: its team's.
     pub(crate) strategy: Option<FilePath>,
-    /// Start position: [x, y] in m from the datum, or a named point of its team such as "PH".
+    /// Start: [x, y] in m from the datum, or a named point of its team such as "PH".
     /// Default: on a line midway between its flag and the scrimmage line.
     pub(crate) at: Option<Position>,
     /// Initial compass heading, degrees. Default: towards the opponent's end.
@@ -83,6 +83,9 @@ pub(crate) struct Vehicle {
     pub(crate) heading_deg: Option<f64>,
     /// Instead of `at`: a random position in a rectangle.
     pub(crate) spawn: Option<Spawn>,
+    /// When it joins the game, s; until then it holds, out of action.
+    #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
+    pub(crate) joins_s: f64,
     /// Source of the boat's motion.
     #[schemars(extend("default" = "simulated"))]
     pub(crate) source: Source,
@@ -105,6 +108,9 @@ pub(crate) struct Fleet {
     pub(crate) strategy: Option<FilePath>,
     /// Random positions in a rectangle. Default: midway between their flag and the scrimmage line.
     pub(crate) spawn: Option<Spawn>,
+    /// When they join the game, s; until then they hold, out of action.
+    #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
+    pub(crate) joins_s: f64,
 }
 
 /// A rectangle for random start positions, as seen from the team's own end.

@@ -43,7 +43,7 @@ pub enum Fact {
     OwnSide,
     /// The boat is outside the field.
     Outside,
-    /// The boat is out of action because of power play.
+    /// The boat is out of action.
     Disabled,
     /// The boat may tag now: it is in play, and its cooldown is over.
     CanTag,
