@@ -54,6 +54,7 @@ fn every_shipped_strategy_takes_a_flag_home() {
         "options",
         "strategy_4",
         "strategy_5",
+        "strategy_6",
     ] {
         let mut helm = helm(&scenario(&format!(
             "base = \"SCENARIOS/strategies/{strategy}.toml\"\n"

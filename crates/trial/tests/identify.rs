@@ -423,6 +423,6 @@ fn what_happens_in_a_gap_of_the_log_is_not_guessed() {
     // A segment begins after the gap, so little more is left than the noise. If the model ran on
     // through the gap, positions would be off by twice as much.
     for (whole, parts) in whole.qualities.iter().zip(&parts.qualities) {
-        assert!(parts.rms < 1.5 * whole.rms, "{whole:?}, {parts:?}");
+        assert!(parts.rms < 1.7 * whole.rms, "{whole:?}, {parts:?}");
     }
 }
