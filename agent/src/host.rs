@@ -234,7 +234,7 @@ fn pass_lines(stdout: ChildStdout, sender: &SyncSender<Vec<u8>>) {
     }
 }
 
-/// The first request: everything constant in a game, in Pyquaticus' frame.
+/// The first request: everything that is constant during a game, in Pyquaticus' frame.
 fn game_of(scenario: &Scenario, team: TeamId, host: &Host) -> Value {
     let field = &scenario.field;
     let teams = [TeamId(0), TeamId(1)];
@@ -281,7 +281,7 @@ impl HostMind {
         (program, is_direct): (&Program, bool),
         entry: Arc<Mutex<Entry>>,
     ) -> HostMind {
-        // The entry's process drops values that other years do not have.
+        // The entry's process drops the values that its competition year does not have.
         let spaces = Spaces {
             observation: ObservationSpace::Pyquaticus2026,
             action: ActionSpace::Pyquaticus,
@@ -386,7 +386,8 @@ mod tests {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// An entry whose Python is a shell script that loads, then runs `body` for request `$n`.
+    /// An entry whose Python interpreter is a shell script that loads, then runs `body` for request
+    /// `$n`.
     fn entry(folder: &Path, body: &str, is_allowed: bool) -> Entry {
         let game = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/attack_1v1.toml");
         let scenario = scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"));

@@ -8,8 +8,8 @@ use scenario::strategy::Attractor;
 
 impl BehaviourLogic for Attractor {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        // If the place is unknown, as for a boat out of sight, this behaviour adds no function and
-        // the others decide.
+        // If the place is unknown, such as that of a boat out of sight, this behaviour adds no
+        // function and leaves the decision to the others.
         let Some(point) = situation.locate(&self.to) else {
             return;
         };

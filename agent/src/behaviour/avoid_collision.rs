@@ -1,5 +1,5 @@
-//! Collision avoidance: keeps clear of other boats by the closest point of approach, with one
-//! function per contact.
+//! Collision avoidance: keeps clear of other boats, judged by the closest point of approach, with
+//! one function per contact.
 
 use super::nearest::{Nearest, is_meant, nearness};
 use super::steering::keep_clear;
@@ -29,16 +29,16 @@ impl BehaviourLogic for AvoidCollision {
         });
         // Both boats are assumed to keep turning. If each assumes that the other goes straight,
         // both can turn to the same side again and again until they touch. Hull contacts per
-        // boat-hour: 0.44 without this, 0.35 with it, 0.03 with an agreed side too (random
-        // strategies in calm water, `crates/arena/examples/safety.rs`).
+        // boat-hour: 0.44 without this, 0.35 with it, and 0.03 with an agreed passing side as well
+        // (random strategies in calm water, `crates/arena/examples/safety.rs`).
         let own = situation.turning_on();
         for (distance_m, i) in nearest.iter() {
             let other = situation.other(i);
             let contact = other.turning_on();
-            // The idea of reciprocal velocity obstacles (van den Berg, Lin and Manocha, ICRA 2008),
-            // for boats that turn along arcs. Both give way: for the COLREGs roles of stand-on and
-            // give-way, each boat would need to know the other's current state, and observations
-            // may be old.
+            // Applies reciprocal velocity obstacles (van den Berg, Lin and Manocha, ICRA 2008) to
+            // boats that turn along arcs. Both boats give way: with the COLREGs roles of stand-on
+            // and give-way, each would need to know the other's current state, but observations may
+            // be old.
             let leave_to = side(own, contact);
             let function = keep_clear(situation, contact, 0.0, (min_m, max_m), horizon_s, leave_to);
             let share = graded(self.grade, nearness(distance_m, inner_m, outer_m));
@@ -47,8 +47,8 @@ impl BehaviourLogic for AvoidCollision {
     }
 }
 
-/// The side on which two approaching boats leave each other: the side on which they already pass.
-/// Both compute the same side, so neither turns into the other.
+/// The side on which two approaching boats leave each other: the side on which they would pass
+/// anyway. Both compute the same side, so neither turns into the other.
 fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
     let line = contact.at - own.at;
     let past = contact.velocity - own.velocity;
@@ -70,7 +70,7 @@ fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
 fn graded(grade: Grade, nearness: f64) -> f64 {
     match grade {
         Grade::Linear => nearness,
-        // The three shapes of MOOS-IvP's AvoidCollision between its outer and inner distance.
+        // The three shapes of MOOS-IvP's AvoidCollision between its outer and inner distances.
         Grade::Quasi => nearness * nearness.sqrt(),
         Grade::Quadratic => nearness * nearness,
     }

@@ -13,23 +13,24 @@ use rules::field::Obstacle;
 use scenario::strategy::{AvoidObstacle, NEAREST_MAX};
 use std::f64::consts::PI;
 
-/// Time for which a boat must stand still against its orders to count as stopped by an obstacle, s.
+/// How long a boat must stand still, contrary to its orders, to count as stopped by an obstacle, s.
 const STOPPED_S: f64 = 2.0;
-/// Maximum distance of that obstacle by navigation, m: a large error of a receiver.
+/// Maximum distance to that obstacle from the estimated position, m: a large receiver error.
 const ERROR_MAX_M: f64 = 10.0;
-/// Distance of another boat that may be what stops the boat, m.
+/// Distance within which another boat may be what stops this one, m.
 const BOAT_M: f64 = 4.0;
 /// How long the boat then backs off, s, and its speed, m/s: it turns around and gains 5 m.
 const BACKS_OFF_S: f64 = 8.0;
 const BACKS_OFF_M_S: f64 = 2.0;
-/// How long it then avoids the place, s, and the radius to avoid, m.
+/// How long it then avoids the place, s, and within what radius, m.
 const FELT_S: f64 = 60.0;
 const FELT_M: f64 = 2.0;
 
 #[derive(Clone)]
 pub(super) struct AvoidObstacleBehaviour {
     task: AvoidObstacle,
-    /// Where something stopped the boat: when, the centre of the place, and the heading away.
+    /// The last stop by an obstacle: its time, the centre of the place, and the heading away from
+    /// it.
     felt: Option<(SimTime, Ned, f64)>,
     /// Precomputed outlines of polygonal obstacles, by obstacle; empty before the first decision.
     outlines: Vec<Outline>,
@@ -53,8 +54,9 @@ impl AvoidObstacleBehaviour {
 }
 
 impl AvoidObstacleBehaviour {
-    /// Backs off from an obstacle that stops the boat, then avoids the place. With a position some
-    /// metres off, boats pressed for minutes against obstacles that they thought they were passing.
+    /// Backs off from an obstacle that stops the boat, then avoids the place. Without this, boats
+    /// with a position error of some metres pushed for minutes against obstacles that they appeared
+    /// to be passing.
     fn feel(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) -> Option<Ned> {
         let since_s = |(since, ..): &(SimTime, Ned, f64)| (situation.now - *since).as_s();
         self.felt.take_if(|felt| since_s(felt) > FELT_S);
@@ -121,7 +123,7 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
             .iter()
             .enumerate()
             .map(|(i, obstacle)| (obstacle.distance(situation.at), i));
-        // Backing off and the place to avoid count towards the functions that a program may have.
+        // Backing off and avoiding the place use two of the functions that a program may have.
         let most = NEAREST_MAX - if felt.is_some() { 2 } else { 0 };
         let nearest = Nearest::of(distances.filter(|(distance_m, _)| *distance_m < outer_m));
         for (distance_m, i) in nearest.iter().take(most) {

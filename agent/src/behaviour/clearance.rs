@@ -15,9 +15,9 @@ const ROUNDING_M: f32 = 0.01;
 
 /// Lowers the utilities of a table according to each candidate's clearance from the edges.
 ///
-/// A candidate's value is the fraction of `save_m` by which it stays inside: half of the value for
-/// the closest distance to an edge on the way, half for the distance at the end of the look-ahead.
-/// The worst edge counts. The fraction `x` yields `x + bend x (1 - x)` of each half.
+/// A candidate's value is the fraction of `save_m` by which it stays inside. Half of the value is
+/// for the closest distance to an edge on the way, half for the distance at the end of the
+/// look-ahead. The worst edge counts. The fraction `x` yields `x + bend x (1 - x)` of each half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -26,7 +26,7 @@ pub(super) struct Clearance<'a> {
     /// Distance beyond which edges are ignored, m.
     pub(super) reach_m: f64,
     pub(super) heading_rad: f64,
-    /// Forward speed through the water, as for candidates, m/s.
+    /// Forward speed through the water, like the candidates' speeds, m/s.
     pub(super) surge_m_s: f64,
     /// Velocity that wind and current add to the boat's, m/s.
     pub(super) drift: Ned,
@@ -219,7 +219,7 @@ impl Turns {
     }
 }
 
-/// Minimum and maximum speed after this time, within the boat's acceleration, m/s.
+/// Minimum and maximum speed that the boat's acceleration allows after this time, m/s.
 #[inline(always)]
 fn reached(old_m_s: f64, after_s: f64, handling: &Handling) -> (f32, f32) {
     let slowest_m_s = old_m_s - handling.deceleration_m_s2 * after_s;
@@ -241,7 +241,7 @@ struct Outward {
 }
 
 impl Outward {
-    /// A turn from one angle to the edge's outward normal to another, each given with its sine.
+    /// A turn between two angles to the edge's outward normal, each given with its sine.
     ///
     /// The outward distance is the integral of the cosine: the sine divided by the turn rate, with
     /// extremes at right angles to the normal.
@@ -303,14 +303,14 @@ impl Way {
     #[inline(always)]
     fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;
-        // The arc is driven at the mean of old and new speed and the rest at the new speed, both
-        // within the acceleration limits.
+        // The arc is driven at the mean of the old and new speeds and the rest at the new speed,
+        // both within the acceleration limits.
         let farthest_m = self.start_m - self.out_s * held(0.5 * (old_m_s + new_m_s), out);
         let end_m = farthest_m - self.drift_m + self.back_s * held(new_m_s, back)
             - self.straight_s * held(new_m_s, straight);
         let least_m = smaller(farthest_m, end_m);
-        // The nearest point and the end each count half: of two courses that come equally near, the
-        // one that then leads away is better, even for a boat that is already outside.
+        // The nearest point and the end each count for half: of two courses that come equally near,
+        // the one that then leads away is better, even for a boat that is already outside.
         kept(least_m * per_m, bend) + kept(end_m * per_m, bend)
     }
 }
@@ -382,7 +382,7 @@ impl Ways {
         let begins_m = self.start_m - larger(self.drift_m, 0.0) - ROUNDING_M;
         let mut bits = 0;
         for i in 0..LANES {
-            // Mean speeds are non-negative and at most the larger of old and new speed.
+            // Mean speeds are non-negative and at most the larger of the old and new speeds.
             let least_m =
                 begins_m - (self.out_s.0[i] + larger(self.straight_s.0[i], 0.0)) * most_m_s;
             bits |= u32::from(least_m < save_m) << i;

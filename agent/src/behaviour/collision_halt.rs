@@ -1,5 +1,5 @@
 //! The collision halt: a boat that has come too close to another boat stops, whatever other
-//! behaviours want, until it is released. In the games of 2023, people separated such boats.
+//! behaviours want, until it is released. In the 2023 games, people separated such boats.
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
@@ -20,7 +20,7 @@ enum Halt {
     Halted {
         since: SimTime,
     },
-    /// Released after its time limit with others still near; the boat halts again only after it has
+    /// Released by the time limit while others were near; the boat halts again only once it has
     /// been clear of them.
     Released,
 }

@@ -49,7 +49,7 @@ impl BehaviourLogic for FullStop {
     }
 }
 
-/// Runs until its duration is over; the helm ends it.
+/// Runs until its duration has elapsed; the helm ends it.
 impl BehaviourLogic for Timer {
     fn run(&mut self, _situation: &Situation, _output: &mut BehaviourOutput<'_>) {}
 }

@@ -27,7 +27,7 @@ impl BehaviourLogic for MaxSpeed {
     }
 }
 
-/// Whether a boat ahead is near enough.
+/// Whether a boat is near enough, and close enough to the bow, to limit the speed.
 fn is_near(task: &MaxSpeed, situation: &Situation, other: &OtherBoat) -> bool {
     let off_bow_rad = wrap_pi(situation.at.bearing_rad(other.at) - situation.own.nav.psi_rad).abs();
     is_meant(task.contacts, situation, other)

@@ -34,11 +34,11 @@ use scenario::strategy::Task;
 
 /// The logic of a behaviour; the helm decides when it runs.
 pub(crate) trait BehaviourLogic: DynClone + Send {
-    /// Observes the situation of a decision, whether the behaviour runs or not.
+    /// Observes the situation at a decision, whether or not the behaviour runs.
     fn observe(&mut self, _situation: &Situation) {}
 
-    /// The variable that this behaviour sets and the index of its string value, whether it runs or
-    /// not.
+    /// The variable that this behaviour sets, even when it does not run, and the index of its
+    /// string value.
     fn option(&self) -> Option<(u16, usize)> {
         None
     }

@@ -3,7 +3,7 @@
 use crate::situation::{OtherBoat, Situation};
 use scenario::strategy::{Boat, Contacts, NEAREST_MAX};
 
-/// Look-ahead for entering the side where the boat can be tagged, s.
+/// How far ahead to predict entry to the side where the boat can be tagged, s.
 const TAG_FORESIGHT_S: f64 = 5.0;
 
 /// The nearest few, without heap allocation; no behaviour responds to more.
@@ -32,8 +32,8 @@ impl Nearest {
 
     pub(super) fn add(&mut self, entry: (f64, usize)) {
         let place = self.entries[..self.count].partition_point(|known| *known <= entry);
-        // Keep at most sixteen, so that the cost of a decision is bounded for any fleet, and the
-        // nearest ones, so that the order of the list does not matter.
+        // Keep at most sixteen, to bound the cost of a decision for any fleet, and keep the
+        // nearest, so that the order of the list does not matter.
         if place < NEAREST_MAX {
             self.count = (self.count + 1).min(NEAREST_MAX);
             self.entries[place..self.count].rotate_right(1);

@@ -10,15 +10,15 @@ use primitives::{Ned, SimTime};
 use scenario::strategy::{BeyondHalt, OpRegion};
 use std::f64::consts::PI;
 
-/// How far inside the edge a returning boat steers for, m.
+/// How far inside the edge the target of a returning boat lies, m.
 const WELL_IN_M: f64 = 5.0;
-/// Additional distance from the edges, as seconds of the drift's standard deviation, because waves
+/// Additional distance from the edges per m/s of the drift's standard deviation, s, because waves
 /// and gusts displace a boat and delay its turns. In a gale over a lake that deviation is 0.3 to
 /// 0.5 m/s. The metres farthest from the edge count little; otherwise a few centimetres would
 /// outweigh the boat's task, which has a twentieth of the weight.
 const GUST_S: f64 = 36.0;
-/// Speed range from the recovery speed to zero utility, m/s: the boat returns as slowly as
-/// configured.
+/// Width over which utility falls from the recovery speed to zero, m/s: the boat returns as slowly
+/// as configured.
 const RECOVERY_BASE_M_S: f64 = 0.5;
 
 /// The side of the edge that the boat counts as being on.
@@ -116,9 +116,9 @@ impl BehaviourLogic for OpRegionBehaviour {
         }
         self.table.clear(output.grid());
         let nav = &situation.own.nav;
-        // A straight line from the boat's position predicts that turning around at full speed
-        // clears the edge, but a Surveyor at 2 m/s needs 7 s and 9 m to turn. The arc reduced
-        // departures from 6.2 to 0.2 per boat-hour (200 games of 120 s, calm water,
+        // With straight lines from the boat's position, turning around at full speed appears to
+        // clear the edge, but a Surveyor at 2 m/s needs 7 s and 9 m to turn. Modelling the arc
+        // reduced departures from 6.2 to 0.2 per boat-hour (200 games of 120 s, calm water,
         // `crates/arena/examples/safety.rs`).
         self.instructions.run(Clearance {
             table: &mut self.table,
@@ -185,7 +185,7 @@ impl Region {
             .model
             .speed_max_m_s
             .max(situation.own.nav.surge_m_s);
-        // The widest turn goes out by twice its radius.
+        // The widest turn leads outward by twice its radius.
         let turn_s = 2.0 / self.handling.mean_turn_rad_s(PI);
         save_m
             + (lookahead_s.max(turn_s) + self.handling.reaction_s)

@@ -13,7 +13,7 @@ use rules::field::{is_within, sides};
 /// Maximum rounding error of a bound, with a margin, m.
 const ROUNDING_M: f64 = 1e-6;
 
-/// A polygon with lower bounds on its distance.
+/// A polygon with lower bounds on the distance to it.
 #[derive(Clone)]
 pub(super) struct Outline {
     corners: Vec<Ned>,
@@ -259,7 +259,7 @@ pub(super) struct Passes<'a> {
     pub(super) lag: Lag,
     /// Duration of the straight run, s.
     pub(super) horizon_s: f64,
-    /// Pass distances of half and full utility, m.
+    /// Pass distances that give half and full utility, m.
     pub(super) min_m: f64,
     pub(super) max_m: f64,
 }
@@ -312,8 +312,8 @@ impl Passes<'_> {
         let end = begin.after(&along, &Lanes::splat(fastest_m));
         let mut before_m2 = Lanes::splat(f64::INFINITY);
         // Near an obstacle, a helm spent two thirds of its time on distances between a polygon and
-        // each of 36 legs on each of 360 courses. Half planes rule out most courses at once: games
-        // with obstacles take 0.34 to 0.53 of the time, with the same digests.
+        // each of 36 legs on each of 360 courses. Half planes rule out most courses at once: with
+        // them, games with obstacles take 0.34 to 0.53 times as long and have the same digests.
         match self.clear_of(&start, &begin, &end) {
             Clear::AllTheWay => return,
             Clear::WhileItTurns => {}
@@ -367,7 +367,7 @@ impl Passes<'_> {
         duration_s
     }
 
-    /// How far along paths a single half plane proves them clear of the polygon, from the start of
+    /// How much of the paths a single half plane proves clear of the polygon, given the start of
     /// each path and the start and end of its straight run.
     #[inline(always)]
     fn clear_of(&self, start: &Places, begin: &Places, end: &Places) -> Clear {
@@ -393,7 +393,8 @@ impl Passes<'_> {
     }
 
     /// Computes the utilities of straight runs by speed, from the first speed that matters to the
-    /// last. Returns the first. The runs lead from `start` to `begin`, displaced along the course.
+    /// last. Returns the index of the first. Each run leads from `start` to a point along the
+    /// course from `begin`.
     #[inline(always)]
     fn run_straight(
         &mut self,
@@ -417,8 +418,9 @@ impl Passes<'_> {
             return first;
         }
         if drifts {
-            // Each speed has a direction of its own. Drifting for the whole horizon before driving
-            // off brought every course near the obstacle, and boats stayed in front of it.
+            // With drift, the direction over the ground depends on the speed. Applying all drift
+            // before the run brought every course near the obstacle, and boats stayed in front of
+            // it.
             for speed_m_s in &speeds_m_s[first..] {
                 let over_ground =
                     Places::splat(self.drift).after(&along, &Lanes::splat(*speed_m_s));
@@ -440,8 +442,8 @@ impl Passes<'_> {
                 .outline
                 .passed_m2(&runs, &Lanes::splat(run_m), before_m2);
             self.outline.utilities.push(self.worth(&least_m2));
-            // All corners are astern, and a longer run changes nothing: from this speed on, all
-            // have the last utility.
+            // All corners are astern, so a longer run changes nothing: all higher speeds have the
+            // last utility.
             if run_m >= last_m {
                 break;
             }
@@ -449,7 +451,7 @@ impl Passes<'_> {
         first
     }
 
-    /// The distance that all straight runs can cover through the water before one may come within
+    /// The distance that all straight runs can cover through the water before any may come within
     /// `near_m`, m.
     #[inline(always)]
     fn clear_m(&self, (start, begin): (&Places, &Places), along: &Places, near_m: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! The output of behaviours at one decision: weighted objective functions, and their task status.
+//! The output of behaviours at one decision: weighted objective functions and task status.
 
 use crate::ivp::{Grid, Objective, Problem};
 use primitives::VehicleId;

@@ -18,7 +18,7 @@ impl BehaviourLogic for Shield {
         };
         let line = enemy.at - guarded.at;
         let range_m = line.length();
-        // Stay at most half-way, so that a close enemy never gets between boat and place.
+        // Stay at most half-way, so that a close enemy never gets between the boat and the place.
         let ahead_m = self.distance_m.value(situation).min(0.5 * range_m);
         let station = if range_m > 1e-6 {
             guarded.at + line.scaled(ahead_m / range_m)

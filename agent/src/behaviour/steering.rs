@@ -16,8 +16,8 @@ const SPEED_SUMMIT_DELTA: f64 = 20.0;
 /// zero, so that a boat already too close comes no closer.
 pub(super) const CPA_MIN_UTILITY: f64 = 50.0;
 
-/// The boat's delay in following a decision. Like the courses and speeds that are chosen,
-/// its `velocity` is relative to the water.
+/// The boat's delay in following a decision. Like candidate courses and speeds, the lag's
+/// `velocity` is relative to the water.
 pub(super) fn lag(situation: &Situation) -> Lag {
     let handling = situation.motion.handling();
     Lag {
@@ -31,8 +31,7 @@ pub(super) fn lag(situation: &Situation) -> Lag {
     }
 }
 
-/// A course straight to a place and a given speed, with equal weights: the function of MOOS-IvP's
-/// waypoints.
+/// A course straight to a place and a given speed, with equal weights, as for MOOS-IvP's waypoints.
 pub(super) fn toward(situation: &Situation, to: Ned, speed_m_s: f64) -> Objective<'static> {
     steer(situation, situation.at.bearing_rad(to), speed_m_s, 0.5)
 }
@@ -69,8 +68,8 @@ pub(super) fn steer_heading(
 }
 
 /// The maximum speed at which the boat can reach a place by turning, m/s; a faster boat circles it.
-/// The circle tangent to the heading that passes through the place has a diameter of the distance
-/// divided by the sine of the relative bearing.
+/// The diameter of the circle that is tangent to the heading and passes through the place is the
+/// distance divided by the sine of the relative bearing.
 pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
     let off_bow_rad =
         angle::wrap_pi(situation.at.bearing_rad(to) - situation.own.nav.psi_rad).abs();

@@ -26,7 +26,7 @@ use scenario::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule,
 use std::sync::Arc;
 use steadiness::Steadiness;
 
-/// Speed up to which an order is one to stand still, m/s.
+/// Speed up to which an order counts as an order to stand still, m/s.
 const STANDING_M_S: f64 = 0.5;
 
 /// A behaviour of the program.
@@ -56,7 +56,7 @@ pub struct HelmMind {
     pub(crate) mode: Option<usize>,
     instances: Vec<BehaviourInstance>,
     functions: Functions,
-    /// Values posted in this decision; they take effect after all behaviours have run.
+    /// Values posted at this decision; they take effect after all behaviours have run.
     posted: Vec<(u16, f64)>,
     decided: Decided,
     /// Creates the helm that replaces this one after a fault that kills the agent, if the scenario
@@ -257,7 +257,8 @@ impl HelmMind {
         if problem.is_empty() {
             return Decided::Hold("no behaviour has a preference");
         }
-        // A decision without a preferred course would be the first on the grid, which is north.
+        // Without a preferred course, the decision would be the first course on the grid, which is
+        // north.
         if !problem.decides_course {
             return Decided::Hold("no behaviour prefers a course");
         }
@@ -271,8 +272,9 @@ impl HelmMind {
         // The bonus is a fraction of the weights, at most a tenth (checked when the file is
         // loaded): it can delay a change of mind, but not outweigh safety. Edges do not count: they
         // do not move, so noise causes no changes of mind near them, and counting them would keep a
-        // boat there that is needed elsewhere. Nor does an order to stand still near an obstacle
-        // count: a way around it is worth little more, and boats waited in front of obstacles.
+        // boat near an edge when it is needed elsewhere. Nor does an order to stand still near an
+        // obstacle count: a way around is worth little more, so boats would wait in front of the
+        // obstacle.
         let moves = |function: &&WeightedFunction| {
             !matches!(
                 self.program.behaviours[function.behaviour].task,
@@ -417,8 +419,8 @@ fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Ve
 }
 
 fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
-    // Use the picture's events rather than comparing facts: a picture may be lost, and its events
-    // arrive with the next.
+    // Use the picture's events rather than comparing facts: if a picture is lost, its events arrive
+    // with the next.
     let happened = rule.on.is_none_or(|trigger| {
         let events = picture.events.iter().filter_map(|record| record.logged());
         events

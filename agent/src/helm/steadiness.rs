@@ -1,6 +1,6 @@
 //! Steadiness: of two nearly equal decisions, the helm prefers the one nearer to the last decision.
 //!
-//! If a scene has two ways out, noise favours one, then the other, and a boat that follows at once
+//! If a scene has two ways out, noise favours one, then the other, and a boat that switches at once
 //! takes neither. Candidates near the last decision therefore get a small bonus. The best of them
 //! may still move with the scene, so only changes of mind are delayed.
 
@@ -47,7 +47,7 @@ impl Steadiness {
         Some(Steadiness { objective, weight })
     }
 
-    /// A choice, with the value that behaviours alone give it.
+    /// The choice with its value from behaviours alone, without the bonus.
     pub(super) fn without(&self, grid: &Grid, choice: Choice) -> Choice {
         let Decision { course, speed } = choice.decision;
         let extra = f64::from(
