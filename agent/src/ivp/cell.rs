@@ -1,10 +1,10 @@
-//! Cells of the decision grid: neighbouring courses by neighbouring speeds, which share one bound
-//! of a function.
+//! Cells of the decision grid: blocks of neighbouring courses and speeds that share one bound of a
+//! function.
 //!
-//! As velocities they form a ring segment. It lies within a polygon of four corners: on the first
-//! and last course, at the slowest speed and at the fastest speed, the latter extended until the
-//! side between them touches the outer arc. A wide segment uses the square around all speeds
-//! instead.
+//! The velocities of a cell form a ring segment. It lies within a polygon with four corners: on the
+//! first and last courses, at the slowest and fastest speeds, where the fast corners are moved
+//! outwards until the side between them touches the outer arc. For a wide segment, the square
+//! around all speeds is used instead.
 
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes, SIDE};
@@ -33,7 +33,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// Velocities, north and east, m/s. The polygon between them contains all velocities of the
+    /// The corners as velocities, north and east, m/s. Their polygon contains all velocities of the
     /// cell.
     #[inline(always)]
     pub(super) fn corners(&self) -> [(f32, f32); 4] {
@@ -180,8 +180,8 @@ pub(super) struct Cells {
     pub(super) sector_courses: usize,
     /// Number of sectors along the speeds.
     pub(super) sector_speeds: usize,
-    /// Groups of sectors, speeds varying fastest: a group that leads away from the best courses is
-    /// excluded as a whole.
+    /// Groups of sectors, speeds varying fastest, so that a group that leads away from the best
+    /// courses can be excluded as a whole.
     pub(super) sectors: Vec<(CourseSpans, SpeedSpans)>,
     /// For the tiles of a sector, by the sector's index along the courses; courses vary fastest.
     pub(super) tile_courses: Vec<CourseSpans>,

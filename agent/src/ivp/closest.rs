@@ -1,7 +1,7 @@
 //! The closest point of approach to a contact for every course and speed.
 //!
-//! The contact is at `p` relative to own ship and moves with `c`; own ship is on course `d`
-//! (a unit vector) at speed `s`. The contact's relative velocity is `w = c - s d`, and its distance
+//! The contact is at `p` relative to own ship and has velocity `c`; own ship is on course `d` (a
+//! unit vector) at speed `s`. The contact's relative velocity is `w = c - s d`, and its distance
 //! `|p + w t|` is smallest at
 //!
 //! ```text
@@ -18,12 +18,12 @@
 //! Two boats that avoid each other may choose the same side and collide. If a [`Side`] is given on
 //! which to leave each other, distances count less where the line of sight turns to the other side.
 //!
-//! Bounds over a cell: its first and last course at its slowest and fastest speed are four paths.
-//! At any time every other path of the cell lies between them, except for the bend of the arcs
-//! between these courses. The distance is a convex function of the position, so at that time it is
-//! largest on one of the four. No closest point of approach is farther than that, which gives an
-//! upper bound for the cell. Conversely, along any direction, no point of a leg is nearer than the
-//! nearest point of the four.
+//! Bounds over a cell: its first and last courses at its slowest and fastest speeds give four
+//! paths. At any time every other path of the cell lies between them, except for the bend of the
+//! arcs between these courses. The distance is a convex function of the position, so at that time
+//! it is largest on one of the four. No closest point of approach is farther than that, which gives
+//! an upper bound for the cell. Conversely, along any direction, no point of a leg is nearer than
+//! the nearest point of the four.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
@@ -36,7 +36,7 @@ const ROUNDING: f64 = 1e-5;
 /// The slope of a step.
 const STEP: f64 = 1e12;
 
-/// Minimum time to meet a contact, even one that is never met, s.
+/// Minimum assumed time to meet a contact, even one that is never met, s.
 const MEETING_MIN_S: f64 = 1.0;
 
 /// A side of a boat.
@@ -115,7 +115,7 @@ impl Closest {
         }
         let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
-        // Minimum and maximum distance may be equal, and division by zero must be avoided.
+        // The minimum and maximum distances may be equal, so avoid division by zero.
         let slope = |rise: f64, width_m: f64| {
             if width_m > 0.0 {
                 (rise / width_m).min(STEP)
@@ -207,8 +207,8 @@ pub(super) struct Ready {
     pub(super) group: usize,
 }
 
-/// The contact's relative motion on the paths of a cell: those to its first and last course, each
-/// at its slowest and fastest speed, and one in the middle.
+/// The contact's relative motion on the paths of a cell: those to its first and last courses, each
+/// at its slowest and fastest speeds, and one in the middle.
 #[derive(Clone, Copy)]
 pub(super) struct Ways {
     /// The contact's position after the turns.
@@ -224,8 +224,8 @@ pub(super) struct Ways {
     share: f32,
     w: Vector,
     t: f32,
-    /// Maximum distance of other paths outside the polygon of the outer four (m), and its growth
-    /// rate (m/s).
+    /// Maximum distance by which other paths leave the polygon of the outer four (m), and its
+    /// growth rate (m/s).
     off: f32,
     bend: f32,
 }
@@ -251,8 +251,8 @@ impl Ready {
             )
         };
         let sides = |ready: &Ready| (ready.beside, ready.other_side);
-        // Two behaviours may avoid the same boats at different distances. Distances are expensive;
-        // their utilities are not.
+        // Two behaviours may avoid the same boats at different distances. Computing distances is
+        // expensive; computing their utilities is not.
         ways(self) == ways(other)
             && sides(self) == sides(other)
             && self.turning == other.turning
@@ -402,7 +402,7 @@ fn dot(a: Vector, b: Vector) -> f32 {
     a.0 * b.0 + a.1 * b.1
 }
 
-/// The squared distance at a time, m², from a position with a velocity.
+/// The squared distance after a time, m², given a position and a velocity.
 #[inline(always)]
 fn square(p: Vector, w: Vector, t: f32) -> f32 {
     let north = p.0 + w.0 * t;

@@ -7,7 +7,7 @@ use primitives::Ned;
 /// Utility of the closing speed: linear from 0 (opening at the maximum possible rate) to 100
 /// (closing at that rate).
 ///
-/// The closing speed is the sum of both velocities along the current line of sight. At zero
+/// The closing speed is the sum of both boats' speeds along the current line of sight. At zero
 /// distance there is no line of sight, and all candidates get 50.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closing {
@@ -39,7 +39,8 @@ impl Closing {
         };
         let contact_m_s = self.velocity.length();
         let towards_m_s = -(sight_north * self.velocity.north + sight_east * self.velocity.east);
-        // Assumes both at top speed, so that the utility uses its full range for any contact.
+        // Scale by own ship's top speed plus the contact's speed, so that the utility uses its full
+        // range for any contact.
         let slope = 50.0 / (speed_max_m_s + contact_m_s);
         Some(Ready {
             north: sight_north as f32,

@@ -54,7 +54,7 @@ impl Lanes<i32> {
         self.reduced(larger)
     }
 
-    /// The first lane with this number, which must exist.
+    /// The first lane that contains this number; there must be one.
     #[inline(always)]
     pub(super) fn place_of(&self, number: i32) -> usize {
         let mut places = 0_u32;

@@ -68,7 +68,7 @@ impl Objective<'_> {
     /// The utility of course `k` at speed `j`, in the solver's arithmetic.
     ///
     /// # Panics
-    /// Beyond the grid, or with a table of a different size.
+    /// If `k` or `j` is outside the grid, or with a table of a different size.
     pub fn utility(&self, grid: &Grid, k: usize, j: usize) -> f32 {
         assert!(
             k < grid.courses() && j < grid.speeds(),

@@ -121,7 +121,7 @@ impl CoursePeak {
         let from_middle = grid.ticks_between(self.summit, middle).abs() * self.tick_rad;
         let to_ends =
             grid.circle() / grid.courses() as f64 * self.tick_rad * (LANES / 2 + 1) as f64;
-        // False for a NaN summit, as the comparison is then false and every utility zero.
+        // With a NaN summit the comparison is false, which is correct: every utility is zero.
         from_middle - to_ends < self.peak.peak_width + self.peak.base_width.max(0.0)
     }
 

@@ -44,7 +44,7 @@ pub struct Choice {
 struct Layout {
     grid: Grid,
     cells: Cells,
-    /// Buffers for later searches; at most one for each search that has run at the same time.
+    /// Buffers for later searches; at most as many as searches have run at the same time.
     spare: Mutex<Vec<Bounds>>,
 }
 
@@ -89,8 +89,8 @@ impl Problem {
         Problem::with_instructions(grid, Instructions::best())
     }
 
-    /// A problem on this grid, without functions, for this instruction set, which affects only
-    /// how fast it is solved.
+    /// A problem on this grid, without functions, solved with this instruction set, which affects
+    /// only the speed.
     pub fn with_instructions(grid: Grid, instructions: Instructions) -> Problem {
         let layout = Layout::of(grid);
         Problem {

@@ -85,7 +85,8 @@ impl Kernel for Search<'_> {
             },
         };
         let mut evaluated = 0;
-        // The guess comes first: its value excludes most sectors after evaluating few formulas.
+        // The guess comes first: its value excludes most sectors after few formulas have been
+        // evaluated.
         let guess = self.guess;
         let guess = guess.map(|Decision { course, speed }| (course / SIDE, speed / SIDE));
         if let Some(tile) = guess {

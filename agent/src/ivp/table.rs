@@ -12,7 +12,7 @@ pub struct Table {
     /// By course: as many groups as are needed for all speeds. Undefined for courses that are not
     /// lowered, and beyond the last speed.
     rows: Vec<Lanes<f32>>,
-    /// By group of courses: a bit for each lowered one.
+    /// By group of courses: a bit for each lowered course.
     pub(super) lowered: Vec<u16>,
 }
 

@@ -40,8 +40,8 @@ pub struct Lag {
 const ANGLE_OF_CHORD: f64 = 1.15;
 
 impl Lag {
-    /// Time until own ship is on a course (a unit vector) if it keeps its motion for half of its
-    /// turn, s.
+    /// How long own ship effectively keeps its motion before it is on a course (a unit vector): its
+    /// reaction time plus half of its turn, s.
     #[inline(always)]
     pub fn duration_s(&self, course: Ned) -> f64 {
         let chord = (course - self.heading).length();
@@ -106,8 +106,8 @@ pub(super) struct Fan {
     /// Maximum distance of any of the end points from the straight line between those of `first`
     /// and `last`, m.
     pub(super) off: f32,
-    /// Maximum deviation of a duration from the corresponding mean of those of `first` and `last`,
-    /// s.
+    /// Maximum deviation of a duration from the linear interpolation between those of `first` and
+    /// `last`, s.
     pub(super) off_s: f32,
 }
 
@@ -140,7 +140,7 @@ impl Turning {
         let middle_north = self.heading.0 + north;
         let middle_east = self.heading.1 + east;
         let middle = (middle_north * middle_north + middle_east * middle_east).sqrt();
-        // For the course straight back, the middle of both headings is zero and has no direction.
+        // For the course straight back, the sum of both headings is zero and has no direction.
         let scale = self.radius * chord / larger(middle, 1e-3);
         Turn {
             duration: chord * arc_of_chord * self.s_per_rad,
@@ -165,9 +165,9 @@ impl Turning {
         let cosine = self.heading.0 * cell.north + self.heading.1 * cell.east;
         let within = 1.0 - larger(cosine, -cosine)
             < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
-        // For courses on either side of the bow the arcs bend to both sides, and near straight back
-        // they end far apart. The four corners do not enclose them there, so the bound is widened
-        // by the largest deviation.
+        // For courses on either side of the bow the arcs bend to both sides, and near the course
+        // straight back they end far apart. The four corners do not enclose them there, so the
+        // bound is widened by the largest deviation.
         let at_bow = within & (cosine > 0.0);
         let at_back = within & (cosine <= 0.0);
         off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
@@ -218,7 +218,7 @@ impl MeanSpeed {
     #[inline(always)]
     pub(super) fn of(&self, speed: f32) -> f32 {
         // Compute both before choosing: a choice between numbers in memory becomes a gather, which
-        // took a third of a search.
+        // took a third of the search time.
         let (gain, per_gain) = self.gain;
         let (loss, per_loss) = self.loss;
         let off = speed - self.ahead;
