@@ -3,7 +3,7 @@
 //!
 //! A mind cannot tell a real sea from a simulated one: this crate never imports `sim`. Open
 //! [`Mind`] first, then [`MindRunner`], which runs minds, then [`HelmMind`], which follows a
-//! strategy, the behaviours, and [`ivp`], which weighs them.
+//! strategy, and finally the behaviours and [`ivp`], which weighs them.
 
 mod behaviour;
 mod helm;

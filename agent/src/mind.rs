@@ -40,7 +40,7 @@ pub trait Mind: Any + Send {
         None
     }
 
-    /// Adds the messages to the team after a decision.
+    /// Adds the messages for the team after a decision.
     fn send(&self, _messages: &mut Vec<Word>) {}
 
     /// Receives the messages that teammates sent after the previous decision.

@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 enum Control {
     /// Directly: the boat turns as ordered until the next action, as in Pyquaticus.
     Direct(Box<Situation>),
-    /// Through a helm, as a proposal weighed against safety; with a teacher, not at all.
+    /// Through a helm, as a proposal weighed against safety; with a teacher, actions are ignored.
     Helm(Box<HelmMind>, Option<Teacher>),
 }
 

@@ -40,10 +40,10 @@ impl Due {
 
     /// Records that a decision is made now.
     pub(crate) fn advance(&mut self, now: SimTime, period: SimTime) {
-        // Count from decision to decision, not from picture to picture: lost pictures do not shift
-        // it.
+        // Count from decision to decision, not from picture to picture, so that lost pictures do
+        // not shift the schedule.
         let next = self.0.unwrap_or(now) + period;
-        // After a long gap, missed decisions are not made up.
+        // After a long gap, missed decisions are not made up for.
         self.0 = Some(if next > now { next } else { now + period });
     }
 }
@@ -116,8 +116,8 @@ impl BoardPolicy {
         let output = self.network.output(self.model.output());
         let likeliest = action_of(&self.model, output)?;
         let action = if self.is_sampled {
-            // Use a separate stream for each boat: teammates with the same network draw different
-            // actions.
+            // Use a separate stream for each boat, so that teammates with the same network draw
+            // different actions.
             let me = situation.model.me;
             let noise = Noise::new(situation.model.seed, &format!("policy/{}", me.index()));
             Action::drawn(output, noise.unit(self.decisions))

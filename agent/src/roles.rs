@@ -17,8 +17,8 @@ pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     })
 }
 
-/// The role that `strategy` gives a vehicle with a different strategy in the scenario, as if its
-/// whole team followed `strategy`.
+/// The role that `strategy` would give a vehicle if its whole team followed `strategy`, whatever
+/// strategy the scenario gives it.
 pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
     dealt(scenario, vehicle, strategy, |_| true)
 }
@@ -39,7 +39,8 @@ fn dealt<'a>(
         .collect();
     if strategy.assignment == Assignment::Seeded {
         let team = &scenario.teams[team.index()].name;
-        // Use one stream per team name: neither another team nor other draws change this deal.
+        // Use one stream per team name, so that neither another team nor other draws change this
+        // deal.
         Stream::new(scenario.seed, &format!("roles/{team}")).shuffle(&mut roles);
     }
     let place = boats

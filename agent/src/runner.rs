@@ -1,5 +1,5 @@
 //! Runs minds, decision by decision: delivers teammates' messages, then policy proposals; lets
-//! every mind decide; then collects the messages to its team.
+//! every mind decide; then collects the minds' messages to their teams.
 //!
 //! Uses neither network nor clock. The arena, agent processes, replays and emulated boats all use
 //! this loop, so a game has the same bytes in each of them.
@@ -34,7 +34,7 @@ struct Team {
     view: Arc<TeamView>,
     /// The previous view, whose memory is reused for the next.
     before: Arc<TeamView>,
-    /// The picture of the view in the current decision, identified by its address in memory.
+    /// The picture behind the view at the current decision, identified by its address in memory.
     picture: Option<usize>,
 }
 
@@ -55,7 +55,7 @@ impl Team {
         }
         self.picture = Some(std::ptr::from_ref(picture).addr());
         std::mem::swap(&mut self.view, &mut self.before);
-        // A mind that has not received a picture since then may still use the old view.
+        // A mind that has received no picture since the old view was computed may still hold it.
         if Arc::get_mut(&mut self.view).is_none() {
             self.view = Arc::new(TeamView::clone(&self.before));
         }
@@ -221,8 +221,8 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.decided = Some(stamp);
         let mut sent = std::mem::take(&mut self.sent);
         sent.clear();
-        // Send after all have decided: teammates receive a boat's messages at the next decision, in
-        // one process as across several, for any order of the minds.
+        // Send after all have decided: teammates receive a boat's messages at the next decision,
+        // whether in one process or several, for any order of the minds.
         self.boats.iter().for_each(|boat| boat.mind.send(&mut sent));
         self.receive(&sent);
         self.sent = sent;

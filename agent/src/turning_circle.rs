@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 
 /// Warnings about a valid game: requirements of each boat's role that the boat cannot meet.
 ///
-/// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once for the
-/// next one. If that point lies inside the turning circle by more than the capture radius, the boat
-/// circles it or misses it. Only points that are constant throughout the game are checked.
+/// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once towards
+/// the next one. If that point lies inside the turning circle by more than the capture radius, the
+/// boat circles it or misses it. Only points that are constant throughout the game are checked.
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
     // Boats with the same role have the same warning, listed once and in a fixed order.

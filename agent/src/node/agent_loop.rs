@@ -19,14 +19,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// Number of times, per team, that a game's first picture may arrive after later ones: resent
-/// copies that the network delayed. A game that was reset repeats its first picture until its
-/// agents have joined again.
+/// Number of times, per team, that a game's first picture may arrive after later ones, as a resent
+/// copy that the network delayed. More copies mean that the game was reset: it then repeats its
+/// first picture until its agents have joined again.
 const FIRST_PICTURES_LATE: usize = 2;
 /// Interval at which an agent without incoming pictures checks whether the sim is alive.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// In lockstep, teammates' messages arrive before the picture unless hubs on the way reorder them
-/// or a link failed. The agent waits this long for them, once.
+/// or a link fails. The agent waits this long for them, once.
 const MESSAGES_LATE: Duration = Duration::from_millis(500);
 /// Maximum number of pictures per team queued while the minds decide.
 const UNREAD_MAX: usize = 64;

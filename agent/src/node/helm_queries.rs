@@ -14,7 +14,7 @@ const INBOX: usize = 32;
 /// How long a mind keeps utilities after the last query that requested them.
 const LOOKED_AT: Duration = Duration::from_secs(5);
 /// How long a query waits for the first decision with kept utilities. A paused game makes no
-/// decisions, and the page waits at most a second.
+/// decisions, and the web page waits at most a second.
 const NEXT_DECISION: Duration = Duration::from_millis(500);
 /// Maximum number of answers between picture polls: a flood of queries must not keep a boat from
 /// deciding.

@@ -71,7 +71,7 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         if !matches!(played, Ok(true)) {
             break played.map(drop);
         }
-        // The seed may have changed strategies and boats.
+        // The new seed may have changed strategies and boats.
         search = GameSearch::new(settings.wait, &settings.stop);
         let described = || game_search::choose_game(&bus, Some(&game));
         (_, info) = search.until(&mut looking(tell), described)?;

@@ -92,8 +92,8 @@ impl Talk {
         })
     }
 
-    /// Passes on to the minds the messages that teammates elsewhere sent after the previous
-    /// decision.
+    /// Passes on to the minds the messages that teammates in other processes sent after the
+    /// previous decision.
     pub(super) fn hear(&mut self, runner: &mut MindRunner, seq: u64) {
         if self.outgoing.is_empty() {
             return;
@@ -115,7 +115,7 @@ impl Talk {
         runner.receive(&self.words);
     }
 
-    /// Collects the minds' messages after a decision, to send to teammates elsewhere.
+    /// Collects the minds' messages after a decision, to send to teammates in other processes.
     pub(super) fn publish_words(&mut self, said: &[Word], stamp: Stamp) {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);

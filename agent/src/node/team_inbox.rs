@@ -30,7 +30,7 @@ struct Sender {
     awaited_at: Option<u64>,
 }
 
-/// Messages in transit to a decision.
+/// Messages on their way to the next decisions.
 #[derive(Clone, Debug)]
 pub struct TeamInbox {
     /// By vehicle index.

@@ -31,7 +31,7 @@ impl Observer {
         }
     }
 
-    /// The observation at this decision of the policy.
+    /// The observation for this decision of the policy.
     pub(crate) fn observe(&mut self, situation: &Situation) -> &[f32] {
         if let Some(edition) = self.space.edition() {
             pyquaticus::write(situation, edition, &mut Numbers::new(&mut self.frames));

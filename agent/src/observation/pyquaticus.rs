@@ -4,7 +4,7 @@
 //!
 //! For the boat itself: the enemies' flag, its own flag, the walls to starboard, behind, to port
 //! and ahead as the team faces the enemies' end, the scrimmage line, speed, carrying, own side,
-//! time since its last tag, tagged, out of action (2026), both scores (not 2023). Then for each
+//! time since its last tag, tagged, out of action (2026), both scores (not in 2023). Then for each
 //! other boat, teammates first: bearing, distance, heading relative to the line to this boat,
 //! speed, carrying, own side, time since its last tag, tagged, out of action (2026).
 //!

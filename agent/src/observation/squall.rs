@@ -45,7 +45,7 @@ pub(super) fn write(
         let others = situation.others();
         let mut others: Vec<_> = others.filter(|other| other.is_enemy == is_enemy).collect();
         // Sort enemies by distance: the scenario's order means nothing to a policy, and if there
-        // are too few slots, the nearest boats are kept. Teammates that fit keep their slots.
+        // are too few slots, the nearest boats are kept. Teammates keep their slots if all fit.
         if is_enemy || others.len() > count {
             others.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         }
@@ -186,8 +186,8 @@ fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
     let line = place - situation.at;
     let [ahead_m, starboard_m] = along_axes(situation, line);
     let distance_m = math::length(ahead_m, starboard_m);
-    // Give the direction as two components, not as an angle, which jumps from half a turn to minus
-    // half a turn astern.
+    // Give the direction as two components: an angle would jump from half a turn to minus half a
+    // turn astern.
     let per_m = if distance_m > 1e-6 {
         1.0 / distance_m
     } else {

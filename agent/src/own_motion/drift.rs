@@ -16,9 +16,9 @@
 //! the variance s² and the correlation time T it has the density r = 2 s² T at frequencies far
 //! below those of the waves. s² is the mean square of the innovation.
 //!
-//! In a turn a boat slides outwards, apart from any drift: by Y = -(m + A11) u r against the
-//! resistance in sway, with values from the boat file (Fossen 2021, ch. 6). A part of this counts
-//! as noise.
+//! In a turn a boat slides outwards even without drift: the force Y = -(m + A11) u r acts against
+//! the resistance in sway, with values from the boat file (Fossen 2021, ch. 6). Part of this slide
+//! counts as noise.
 //!
 //! The component along a constant heading is unobservable. A boat that steers by speed over the
 //! ground does not need it, and the first turn reveals it.
@@ -27,8 +27,8 @@ use super::handling::Handling;
 use messages::picture::Nav;
 use primitives::{Ned, math};
 
-/// Variance of the drift's change per second, m²/s³: a gust or a turn beam-on changes the drift by
-/// 0.2 m/s in four seconds.
+/// Variance of the drift's change per second, m²/s³: a gust, or turning beam-on, changes the drift
+/// by 0.2 m/s in four seconds.
 const WALK_M2_S3: f64 = 0.01;
 /// Variance of an unknown drift, and upper bound of the variance, m²/s².
 const UNKNOWN_M2_S2: f64 = 1.0;
@@ -44,7 +44,7 @@ const SLIDE_ERROR: f64 = 0.5;
 /// Correlation time of that error, s: about one turn.
 const SLIDE_TIME_S: f64 = 4.0;
 
-/// The estimate. The default is that for an unknown boat.
+/// The estimate. The default is for an unknown boat.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DriftEstimate {
     /// The drift over the ground, m/s.
@@ -76,7 +76,7 @@ impl DriftEstimate {
         }
         let (north, east, both) = self.variance;
         // The variance is bounded, so that a single wave does not determine the drift along an axis
-        // unobserved for an hour.
+        // that was unobserved for an hour.
         let grown = |variance: f64| (variance + WALK_M2_S3 * step_s).min(UNKNOWN_M2_S2);
         let north = grown(north);
         let east = grown(east);

@@ -1,5 +1,5 @@
-//! Handling: how soon, fast and hard a boat turns and brakes, initially from its file and later
-//! from observation.
+//! Handling: how soon, how fast and how hard a boat turns and brakes, initially from its file and
+//! later from observation.
 
 use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thruster};
 
@@ -7,7 +7,7 @@ use scenario::boat::{Autopilot, Boat, Drive, Hull, Kinematic, ThrustCurve, Thrus
 const MEAN_OF_STEADY: f64 = 0.7;
 /// Delay until a decision takes effect, in addition to lag and latency of the thrusters, s.
 const DECISION_S: f64 = 0.45;
-/// Mean yaw rate of a turn as a fraction of its initial rate, since the error decreases.
+/// Mean yaw rate of a turn as a fraction of its initial rate; below 1 because the error decreases.
 const MEAN_OF_FIRST: f64 = 0.6;
 /// Minimum turn rate of a boat with thrusters as a fraction of the maximum: the helm keeps ordering
 /// more during a turn.
@@ -41,7 +41,7 @@ pub(crate) struct Handling {
     /// Acceleration and deceleration, m/s².
     pub(crate) acceleration_m_s2: f64,
     pub(crate) deceleration_m_s2: f64,
-    /// Outward drift velocity per product of speed and yaw rate in a turn (s), and its decay time
+    /// Outward slide velocity in a turn per product of speed and yaw rate (s), and its decay time
     /// (s).
     pub(crate) slide_s: f64,
     pub(crate) slide_decay_s: f64,
@@ -120,8 +120,8 @@ fn of_thrusters(hull: &Hull, thruster: &Thruster, autopilot: &Autopilot) -> Hand
             (newton(points.last()), newton(points.first()))
         }
     };
-    // Full ahead on one side and full astern on the other, as a front seat steers with two
-    // thrusters and no rudder.
+    // Full ahead on one side and full astern on the other: a front seat with two thrusters and no
+    // rudder steers like this.
     let moment_newton_m = thruster.arm_m * (ahead_newton + astern_newton);
     // Evaluate at half of the top speed: a moving hull resists turning more, and boats turn while
     // moving.

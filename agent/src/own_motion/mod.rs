@@ -1,8 +1,8 @@
 //! The boat's response to orders: its drift, its heading offset and its handling.
 //!
-//! Everything derives from the boat file, the boat's own navigation and its own orders, so that it
-//! works on a real boat as in simulation. Decisions are heading and speed through the water; the
-//! velocity over the ground is their sum with the drift.
+//! Everything is derived from the boat file, the boat's own navigation and its own orders, so it
+//! works the same on a real boat and in simulation. A decision is a heading and a speed through the
+//! water; adding the drift gives the velocity over the ground.
 
 mod drift;
 mod handling;
@@ -29,7 +29,7 @@ const BRAKES_S: f64 = 1.0;
 /// Turn angle from which a point boat is ordered more than its current speed, to have thrust for
 /// turning, and the angle from which it is ordered full speed, rad.
 const STEERS_FROM_RAD: (f64, f64) = (0.35, 1.0);
-/// Minimum ordered speed and maximum speed over the ground of a boat that something stops, m/s.
+/// Minimum ordered speed and maximum speed over the ground of a boat that counts as stopped, m/s.
 const STOPPED_M_S: (f64, f64) = (1.0, 0.2);
 /// Minimum turn that keeps its initial side, rad.
 const LARGE_TURN_RAD: f64 = 2.2;
@@ -61,10 +61,10 @@ pub(crate) struct OwnMotion {
     turn: SeenTurn,
     /// The desired heading and the heading ordered for it, rad; `None` after any other order.
     ordered: Option<(f64, f64)>,
-    /// The ordered speed, m/s, and for how long the boat has stood still regardless, s.
+    /// The ordered speed, m/s, and how long the boat has stood still despite it, s.
     ordered_m_s: f64,
     stopped_s: f64,
-    /// From the navigation point to the bow, m.
+    /// Distance from the navigation point to the bow, m.
     bow_m: f64,
     fix_at: SimTime,
     psi_rad: f64,
@@ -159,7 +159,7 @@ impl OwnMotion {
         }
     }
 
-    /// For how long the boat has stood still against its orders, s.
+    /// How long the boat has stood still contrary to its orders, s.
     pub(crate) fn stopped_s(&self) -> f64 {
         self.stopped_s
     }
@@ -449,7 +449,7 @@ mod tests {
         let large = motion("large_usv_kinematic").handling();
         assert!((large.deceleration_m_s2 - 0.25).abs() < 1e-9, "{large:?}");
         // An error of half a radian sets a rudder of 0.35 % per degree, less 0.07 % per degree a
-        // second, which at 70 % thrust turns it at 0.117 rad/s.
+        // second, which at 70 % thrust turns the boat at 0.117 rad/s.
         assert!(
             (large.yaw_rate_rad_s(0.5) - 0.1168).abs() < 0.001,
             "{large:?}"

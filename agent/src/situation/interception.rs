@@ -71,7 +71,7 @@ pub(super) fn assign(
         let mut soonest = None;
         for (i, interceptor) in left.iter().enumerate() {
             // With many boats, most are too far away to be first, even head-on. Computing the
-            // meeting time of every pair took a quarter of a game of 100 against 100.
+            // meeting time of every pair took a quarter of the time of a game of 100 against 100.
             let reach_m = (interceptor.speed_m_s + intruder_m_s) * (soonest_s + KEPT_S) * ROUNDING;
             if interceptor.at.distance_squared(intruder.at) > reach_m * reach_m {
                 continue;
@@ -98,8 +98,8 @@ fn time_to_meet_s(interceptor: &Interceptor, intruder: &Intruder) -> f64 {
         .unwrap_or_else(|| 2.0 * line.length() / interceptor.speed_m_s)
 }
 
-/// The earliest time at which a boat driving straight at this speed meets a contact at `line` of
-/// constant velocity, s; `None` if they never meet.
+/// The earliest time at which a boat driving straight at this speed meets a contact at `line` with
+/// this constant velocity, s; `None` if they never meet.
 ///
 /// The time is the smallest positive root of |line + velocity t| = speed t.
 pub(crate) fn meeting_time_s(line: Ned, velocity: Ned, speed_m_s: f64) -> Option<f64> {

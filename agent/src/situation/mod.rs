@@ -1,4 +1,4 @@
-//! The situation: a helm's knowledge at a decision, in the terms of strategies.
+//! The situation: a helm's knowledge at a decision, in the terms that strategies use.
 
 mod game_model;
 mod interception;
@@ -30,10 +30,10 @@ use turn_estimate::turning_on;
 
 /// Distance to an unknown object, m.
 const NOWHERE_M: f64 = 1e9;
-/// A boat that is tagged within this fraction of the radius from the centre of its untagging place
-/// must leave the place first.
+/// A boat that is tagged within this fraction of the untagging radius from the centre must first
+/// leave its untagging place.
 const WELL_INSIDE: f64 = 0.5;
-/// Fraction of the radius beyond which the boat counts as having left.
+/// Fraction of that radius beyond which the boat counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
 
 /// Another boat.
@@ -46,7 +46,7 @@ pub(crate) struct OtherBoat {
     velocity: Velocity,
     pub(crate) psi_rad: f64,
     yaw_rate_rad_s: f64,
-    /// See [`OtherBoat::turning_on`]; only in a large fleet.
+    /// The cached [`OtherBoat::turning_on`]; only in a large fleet.
     turned: Option<MovingPoint>,
     pub(crate) tagged: bool,
     /// Whether power play has put the boat out of action.
@@ -61,8 +61,8 @@ pub(crate) struct OtherBoat {
     pub(crate) intrudes: bool,
 }
 
-/// A velocity over the ground as received, m/s. It is rotated on demand, since only a few boats of
-/// a large team require that.
+/// A velocity over the ground as received, m/s. It is rotated on demand, because only a few
+/// velocities of a large team are needed.
 #[derive(Clone, Copy, Debug)]
 enum Velocity {
     Ned(Ned),
@@ -471,7 +471,7 @@ impl Values for Situation {
     }
 }
 
-/// A measure between two places, or its default if one is unknown.
+/// A measure between two places, or its default if either place is unknown.
 fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>) -> f64 {
     let points = from.zip(to);
     match measure {

@@ -1,7 +1,7 @@
 //! A team's view: the knowledge that all boats of a team share about each other and other boats.
 //!
 //! A mind computes it from each picture. In a process with several boats of a team, the runner
-//! computes it once for all of them: in a large fleet, the rest of a decision takes less time.
+//! computes it once for all of them: in a large fleet, it takes longer than the rest of a decision.
 
 use super::game_model::TeamModel;
 use super::interception::{self, Interceptor, Intruder, Pair};
@@ -19,12 +19,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 const KEEPS_ON_S: f64 = 15.0;
 /// Time after which a contact is assumed to be at rest, s.
 const STILL_AFTER_S: f64 = 30.0;
-/// Time without a fix after which a boat of the team is dead reckoned, s: with the usual delays, it
-/// moves less than a receiver's error, and rotating the motion of a whole fleet takes time.
+/// Time without a fix after which a boat of the team is dead reckoned, s: with the usual delays, a
+/// boat moves by less than a receiver's error, and rotating the motion of a whole fleet takes time.
 const LATE_S: f64 = 0.5;
-/// Up to this many boats, all are compared with a place.
+/// Maximum number of boats that are compared with a place one by one.
 const FEW: usize = 32;
-/// Width of the rows into which more boats are sorted, m.
+/// Width of the rows into which a larger number of boats is sorted, m.
 const ROW_M: f64 = 16.0;
 
 /// The track of a boat of the team since its last fix, given its velocity at the fix along its
@@ -46,7 +46,7 @@ pub struct TeamView {
     pub(super) boats: Vec<OtherBoat>,
     /// The number of the team's own boats.
     pub(super) own: usize,
-    /// Many boats by row from south to north, then from west to east: row, place, index.
+    /// The boats, if many, by row from south to north, then from west to east: row, place, index.
     rows: Vec<(i64, Ned, usize)>,
     /// Tracks of the team's boats, by vehicle index.
     tracks: Vec<Option<Track>>,
@@ -58,7 +58,7 @@ pub struct TeamView {
     /// Boats that power play has put out of action.
     disabled: Vec<VehicleId>,
     pairings: Pairings,
-    /// The number of pictures so far, and the owner of the view unless it is a single mind.
+    /// The number of pictures so far, and the runner that owns the view; `None` for a single mind.
     pictures: u64,
     runner: Option<Arc<()>>,
 }
@@ -68,7 +68,7 @@ pub struct TeamView {
 struct Pairings(Mutex<Vec<[Arc<[Pair]>; 2]>>);
 
 impl Clone for Pairings {
-    /// Returns empty pairings: copying would only save computing them again.
+    /// Returns empty pairings: a copy would only save recomputing them.
     fn clone(&self) -> Pairings {
         Pairings::default()
     }
@@ -195,9 +195,9 @@ impl TeamView {
             .find(|boat| boat.vehicle == vehicle)
     }
 
-    /// The current position of a boat of the team, and its velocity along its axes. Fixes drop out
-    /// for seconds, and links fall silent; headings do not drop out, and the boat has left its last
-    /// position.
+    /// The current position of a boat of the team, and its velocity along its axes. Fixes may drop
+    /// out and links may fall silent for seconds, but headings do not drop out; meanwhile the boat
+    /// has left its last position.
     fn reckoned(&mut self, boat: &OwnBoat, now: SimTime) -> (Ned, Body) {
         let i = boat.vehicle.index();
         let fix = boat.fix_ns;
@@ -293,8 +293,8 @@ impl TeamView {
             .0
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        // Boats of a team that asked at the same decisions have the same pairs. A boat that did
-        // not, because it was tagged, gets its own pairs until they agree again.
+        // Boats of a team that requested pairs at the same decisions have the same pairs. A boat
+        // that did not, because it was tagged, gets its own pairs until the pairs agree again.
         let same = known
             .iter()
             .find(|[other, _]| Arc::ptr_eq(other, before) || other == before);
