@@ -25,7 +25,7 @@ pub struct NavReport {
     pub vehicle: VehicleId,
     /// Whether the fix is reliable. If not, `nav` is the last known navigation.
     pub valid: bool,
-    /// Age of the fix on sending, ns.
+    /// Age of the fix when sent, ns.
     pub age_ns: i64,
     /// Position, heading and velocity.
     pub nav: Nav,
@@ -73,7 +73,8 @@ impl Message for LinkBytes {
 }
 
 /// A gateway report for other nodes. The sim forwards it if it carries the ticket of the boat's
-/// gateway. No other node may publish it: it cannot be forged, and the ticket stays secret.
+/// gateway. Only the sim may publish forwarded reports, so they cannot be forged and the ticket
+/// stays secret.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::Display)]
 #[strum(serialize_all = "snake_case")]
 pub enum Reported {

@@ -12,7 +12,7 @@ pub struct HelmReport {
     pub vehicle: VehicleId,
     /// The time of the decision.
     pub at: SimTime,
-    /// The name of its program.
+    /// The name of the helm's program.
     pub program: String,
     /// The mode with its parent modes: `defending:loitering`.
     pub mode: String,
@@ -58,7 +58,7 @@ pub struct DriftReport {
     pub north_m_s: f64,
     /// Towards east, m/s.
     pub east_m_s: f64,
-    /// Standard deviation of the velocity about that mean, m/s.
+    /// Standard deviation of the velocity around the drift, m/s.
     pub spread_m_s: f64,
 }
 
@@ -127,7 +127,7 @@ pub struct PolicyReport {
 }
 
 impl PolicyReport {
-    /// Labels the discrete actions with their probabilities, most probable first, and the inputs.
+    /// Labels the inputs and the discrete actions with their probabilities, most probable first.
     /// Empty if the scenario lacks the model.
     pub fn words(&self, scenario: &Scenario, vehicle: VehicleId) -> PolicyWords {
         let Some(model) = scenario

@@ -1,4 +1,4 @@
-//! Inputs of a contest in progress. They suffice to replay a game without its agents.
+//! Inputs of a running game. They suffice to replay the game without its agents.
 
 use crate::order::Order;
 use crate::picture::Nav;
@@ -48,7 +48,7 @@ pub enum Input {
 }
 
 impl Input {
-    /// Whether the input fits this game: it has the vehicle, and times are within bounds.
+    /// Whether the input fits this game: the game has the vehicle, and times are within bounds.
     pub fn is_of(self, scenario: &Scenario) -> bool {
         let has = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
         match self {
@@ -80,7 +80,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// The last version that did not record the pictures answered by orders.
+    /// The last version that did not record which pictures orders answer.
     const WITHOUT_GIVEN_AT: u8 = 1;
 
     /// All inputs; `None` for those that are unknown or belong to a different game.

@@ -334,7 +334,7 @@ impl Control {
     pub const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 }
 
-/// Public description of a game by its sim.
+/// A sim's public description of its game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GameInfo {
     /// The sim's version of Squall.

@@ -1,4 +1,4 @@
-//! Orders: requests of a mind to its boat.
+//! Orders: requests from a mind to its boat.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;

@@ -86,11 +86,11 @@ impl Nav {
 /// Gyro and accelerometers, along the boat's axes: ahead, to starboard, down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Imu {
-    /// Rotation rate about the axis ahead, rad/s.
+    /// Rotation rate about the forward axis, rad/s.
     pub roll_rate_rad_s: f64,
-    /// Rotation rate about the axis to starboard, rad/s.
+    /// Rotation rate about the starboard axis, rad/s.
     pub pitch_rate_rad_s: f64,
-    /// Rotation rate about the axis down, rad/s.
+    /// Rotation rate about the downward axis, rad/s.
     pub yaw_rate_rad_s: f64,
     /// Specific force ahead, m/s².
     pub ahead_m_s2: f64,

@@ -62,7 +62,7 @@ impl Refusal {
     ];
 }
 
-/// Counts of refused or missing messages, by reason. In JSON an object with one number per reason.
+/// Counts of refused or missing messages, by reason. In JSON, an object with one number per reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "BTreeMap<Refusal, u64>", from = "BTreeMap<Refusal, u64>")]
 pub struct Refusals([u64; Refusal::ALL.len()]);

@@ -1,4 +1,4 @@
-//! Claims: competing attempts of boats in one tick, and their outcomes.
+//! Claims: competing attempts by boats in one tick, and their outcomes.
 
 use super::{Resolution, TagChoice};
 use std::cmp::Ordering;
@@ -9,7 +9,7 @@ pub(super) struct Claim {
     pub(super) by: u16,
     pub(super) on: u16,
     pub(super) distance_squared: f64,
-    /// Whether a boat `on` carries a flag.
+    /// Whether `on` is a boat that carries a flag.
     pub(super) carries: bool,
 }
 
@@ -21,10 +21,10 @@ impl Claim {
 
 /// Reduces the claims to those that succeed.
 ///
-/// Each boat claims one target, by `choice`. `AtOnce`: of all boats that claim the
-/// same target, the nearest gets it; the others lose nothing and may claim again at the next check.
-/// Granted claims are ordered by target. `InTurn`: a boat gets its target unless an earlier boat
-/// has claimed it and does not fail, and claims nothing else. Granted claims, failed ones included,
+/// Each boat claims one target, by `choice`. `AtOnce`: of all boats that claim the same target, the
+/// nearest gets it; the others lose nothing and may claim again at the next check. Granted claims
+/// are ordered by target. `InTurn`: each boat in turn gets the first target by `choice` that no
+/// earlier boat has claimed without failing, and no other. Granted claims, failed ones included,
 /// are ordered by boat. Ties go to the lower index.
 pub(super) fn settle(
     claims: &mut Vec<Claim>,

@@ -341,9 +341,9 @@ impl Field {
         }
     }
 
-    /// Target of a boat of `team` at `at` on its way to a corner of its own end: the nearer of the
+    /// Target for a boat of `team` at `at` on its way to a corner of its own end: the nearer of the
     /// two points `inset_m` inside both edges. The corners themselves are on the boundary, so a
-    /// boat from outside would follow the edge on the wrong side.
+    /// boat coming from outside would follow the edge on the wrong side.
     pub fn inside_own_corner(&self, team: TeamId, at: Ned, inset_m: f64) -> Option<Ned> {
         // Clockwise: the field is to starboard of the direction from the first corner to the
         // second.

@@ -6,7 +6,7 @@ use primitives::frame::Ned;
 use primitives::id::VehicleId;
 
 impl Referee {
-    /// Untags the tagged boats that are home, at the earliest at the next check after the tag.
+    /// Untags the tagged boats that are home, no earlier than the next check after the tag.
     ///
     /// Home ends at the boundary, although the corners' circles extend beyond it: a boat tagged for
     /// leaving the field is not untagged outside.

@@ -7,7 +7,7 @@ use primitives::id::{TeamId, VehicleId};
 
 impl Referee {
     /// The circle that a boat at `at` must stay out of, if any: centre and radius in m. If several
-    /// flags of its team are home, that of the nearest flag.
+    /// flags of its team are home, the circle is that of the nearest.
     pub fn keepout(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Option<(Ned, f64)> {
         let radius_m = self.rules.flag_keepout_m;
         if radius_m <= 0.0 || !standing.vehicles[vehicle.index()].in_play {

@@ -1,6 +1,6 @@
 //! The rules of the game, and the referee that applies them.
 //!
-//! [`Rules`] are data from `scenarios/rules/*.toml`. Their types declare the keys, as in other
+//! [`Rules`] are data from `scenarios/rules/*.toml`. Their types declare the keys, as for other
 //! scenario files. The [`Referee`] sees positions and time, never physics: the same referee judges
 //! a simulation, a replay and a game on real water.
 

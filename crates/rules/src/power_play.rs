@@ -7,9 +7,9 @@ use primitives::stream::Stream;
 use primitives::time::SimTime;
 
 impl Referee {
-    /// Draws one boat of each team and its time out of action. All team orders and all positions of
-    /// the windows that fit into the game without overlap are equally likely. In a game too short
-    /// for all windows, they share its duration.
+    /// Draws one boat of each team and its time out of action. All orders of the teams and all
+    /// positions of the windows that fit into the game without overlap are equally likely. In a
+    /// game too short for all windows, they share its duration.
     pub(super) fn draw_power_plays(&self, standing: &mut Standing, stream: &mut Stream) {
         if self.rules.power_play <= SimTime::ZERO {
             return;
@@ -40,8 +40,8 @@ impl Referee {
         }
     }
 
-    /// Disables and enables boats according to the windows drawn at the start, and boats that join
-    /// later until then.
+    /// Disables and enables boats according to the windows drawn at the start; also disables boats
+    /// that join later until they join.
     pub(super) fn switch_disabled(&self, standing: &mut Standing, events: &mut Vec<Event>) {
         for (i, (boat, (from, until))) in standing
             .vehicles

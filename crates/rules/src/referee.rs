@@ -98,8 +98,8 @@ impl Referee {
             self.grab(standing, notes, look, events);
         }
         if tags {
-            // Tag before grabs, because a boat tagged at the flag must not grab it. With `InTurn`,
-            // as in Pyquaticus, boats listed first tag more often; that order is only for
+            // Tag before grabbing, because a boat tagged at the flag must not grab it. With
+            // `InTurn`, as in Pyquaticus, boats listed first tag more often; that order is only for
             // comparison.
             self.tag(standing, notes, look, events);
         }

@@ -7,12 +7,12 @@ use primitives::id::VehicleId;
 use primitives::near::Pair;
 
 impl Referee {
-    /// Tags intruders as soon as possible: automatically, or on request once the boat believes that
-    /// it is within reach.
+    /// Tags intruders as soon as possible: automatically, or on request once the tagger believes
+    /// that the intruder is within reach.
     ///
     /// Each tagger claims one intruder; [`super::Resolution`] decides between several taggers of
     /// the same intruder. Only the chosen tagger gets the cooldown, and the points if the tag
-    /// succeeds: the others' tags cost nothing.
+    /// succeeds: the others' attempts cost nothing.
     pub(super) fn tag(
         &self,
         standing: &mut Standing,
