@@ -80,7 +80,7 @@ fn next_record<'a>(rest: &mut &'a [u8]) -> Option<Record<'a>> {
     Some(Record { fields, data })
 }
 
-/// Splits off bytes that follow their length.
+/// Splits off a block of bytes with its length prefix.
 fn next_block<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let (length, after) = rest.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
@@ -118,7 +118,7 @@ fn add(record: &Record<'_>, connections: &mut Connections, bag: &mut Bag) {
         return;
     };
     if op == CONNECTION {
-        // The data is a header of its own, which has the type.
+        // The data is itself a header, which contains the type.
         let mut data = record.data;
         let mut message_type = String::new();
         while let Some(field) = next_block(&mut data) {

@@ -10,9 +10,9 @@ use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
 use trial::{Sheet, plain_head};
 
-/// What a column can mean: its name in `--map`, the names under which loggers write it, in lower
-/// case without unit, and the unit assumed if neither the map nor the column's name has one. The
-/// unit of times then follows from their size.
+/// The meanings of columns: the name in `--map`, the names that loggers use (in lower case, without
+/// unit), and the unit assumed if neither the map nor the column's name has one. For times, their
+/// magnitude then determines the unit.
 const MEANINGS: [(&str, &[&str], &str); 15] = [
     (
         "t",
@@ -69,7 +69,7 @@ const UNITS: [(&str, f64); 18] = [
     ("fraction", 100.0),
 ];
 
-/// Which columns of a table mean what: `speed=SOG:kn,heading=HDT:deg,t=epoch_ms`.
+/// The meanings of a table's columns: `speed=SOG:kn,heading=HDT:deg,t=epoch_ms`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Map(Vec<Mapped>);
 
@@ -132,7 +132,7 @@ fn factor_of(unit: &str) -> Option<f64> {
 #[derive(Clone, Copy)]
 struct Column {
     index: usize,
-    /// To the unit used here; `None` if the unit is unknown.
+    /// Factor to the unit used here; `None` if the unit is unknown.
     factor: Option<f64>,
 }
 
@@ -143,7 +143,7 @@ fn find(sheet: &Sheet, map: Option<&Map>, wanted: &str) -> Result<Option<Column>
         .iter()
         .find(|(name, ..)| *name == wanted)
         .expect("a meaning of the table above");
-    // The unit at the end of a column's name, the longest first: `m_s` rather than `s`.
+    // The unit at the end of a column's name, preferring the longest: `m_s` rather than `s`.
     let unit_of = |head: &str| {
         let units = UNITS.iter().filter(|(unit, _)| {
             head.strip_suffix(unit)
@@ -276,7 +276,8 @@ pub(crate) fn read(path: &Path, boat: &str, map: Option<&Map>) -> Result<Found, 
     Ok(found)
 }
 
-/// Seconds per unit of a time whose unit is unknown, by its size: UNIX times of this century.
+/// Seconds per unit of a time whose unit is unknown, judged by its magnitude as a UNIX time of this
+/// century.
 fn second_per_unit(number: f64) -> f64 {
     match number.abs() {
         size if size > 1e17 => 1e-9,

@@ -95,7 +95,7 @@ impl Log<'_> {
                 .get_f64(name)
                 .filter(|number: &f64| number.is_finite())
         };
-        // Of several sensors or filters, the first.
+        // Of several sensors or filters, use the first.
         let is_first = ["I", "C"]
             .iter()
             .all(|key| number(key).is_none_or(|number| number == 0.0));

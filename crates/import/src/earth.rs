@@ -1,5 +1,5 @@
-//! Positions on the globe, and velocities over the ground: to the field's plane and the boat's
-//! axes.
+//! Converts positions on the globe to the field's plane, and velocities over the ground to the
+//! boat's axes.
 
 use gateway::geodesy::LocalFrame;
 use primitives::LatLon;
@@ -42,7 +42,8 @@ impl Positions {
         self.0.iter_mut().for_each(|position| position.at_s += by_s);
     }
 
-    /// Adds the positions to the logs, in metres from the datum, by default the first position.
+    /// Adds the positions to the logs, in metres from the datum, which defaults to the first
+    /// position.
     pub(crate) fn place(self, logs: &mut Logs, datum: Option<LatLon>) {
         let first = self.0.iter().min_by(|a, b| a.at_s.total_cmp(&b.at_s));
         let Some(datum) = datum.or(logs.datum).or(first.map(|first| first.at)) else {
@@ -64,8 +65,8 @@ impl Positions {
     }
 }
 
-/// Adds what follows from other measurements: velocities along the boat's axes from those over the
-/// ground, a heading from the course. Returns notes about estimates.
+/// Adds quantities derived from other measurements: velocities along the boat's axes from those
+/// over the ground, a heading from the course. Returns notes about estimates.
 pub(crate) fn resolve_motion(logs: &mut Logs) -> Vec<String> {
     let mut notes = vec![];
     for boat in logs.boats() {

@@ -66,7 +66,7 @@ pub struct Input {
     pub boat: Option<String>,
 }
 
-/// The imported logs, and what the user should know about them.
+/// The imported logs, and notes for the user.
 #[derive(Debug, Default)]
 pub struct Imported {
     /// The measurements, sorted by time.
@@ -81,7 +81,7 @@ pub struct Imported {
 #[derive(Default)]
 struct Found {
     logs: Logs,
-    /// Positions on the globe, placed on the plane when all files are read.
+    /// Positions on the globe, placed on the plane once all files have been read.
     positions: Positions,
     /// Whether times are UTC.
     has_utc: bool,

@@ -48,7 +48,7 @@ pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<Found, ImportError
     Ok(found)
 }
 
-/// The length of the frame that these bytes begin with.
+/// The length of the frame with which these bytes begin.
 fn frame_length(bytes: &[u8]) -> Option<usize> {
     match *bytes {
         [0xFE, length, ..] => Some(usize::from(length) + 8),

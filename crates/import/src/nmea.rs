@@ -1,5 +1,5 @@
-//! Logs of NMEA 0183 sentences. The time is that of the receiver, if a line begins with one, or
-//! else that of the last sentence with a time.
+//! Logs of NMEA 0183 sentences. The time is that of receipt, if it precedes the sentence in its
+//! line, or else that of the last sentence with a time.
 
 use crate::csv::time_of;
 use crate::{Found, ImportError, Quantity, bytes_of};
@@ -30,7 +30,7 @@ pub(crate) fn read(path: &Path, boat: &str) -> Result<Found, ImportError> {
         has_receiver_times &= receiver_s.is_some();
         sentences.push(&mut found, receiver_s, &line[start..]);
     }
-    // A receiver's time, too, can count from its start.
+    // Times of receipt may also count from the logger's start.
     found.has_utc = has_receiver_times && sentences.is_utc;
     if !has_receiver_times && let Some(midnight_s) = sentences.midnight_s {
         found.logs.shift(midnight_s);

@@ -63,8 +63,8 @@ pub(crate) enum Encoding {
 }
 
 impl Bag {
-    /// Adds a message that was recorded at `log_s`, if its type is one of those that are read. The
-    /// type is written as in ROS 1 or 2, for example `nav_msgs/Odometry`.
+    /// Adds a message that was recorded at `log_s`, if its type is supported. The type is written
+    /// as in ROS 1 or 2, for example `nav_msgs/Odometry`.
     pub(crate) fn add(
         &mut self,
         topic: &str,
@@ -103,7 +103,8 @@ impl Bag {
         rows.extend(measured.into_iter().map(|measured| (at_s, measured)));
     }
 
-    /// Assigns the topics to boats: to `only` if given, else to the first part of the topic's name.
+    /// Assigns the topics to boats: to `only` if given, else to the boat named in the first part of
+    /// the topic.
     pub(crate) fn found(self, only: Option<&str>, stem: &str) -> Found {
         let mut found = Found::default();
         let is_place = |(_, measured): &(f64, Measured)| {
@@ -154,7 +155,7 @@ fn namespace(topic: &str) -> Option<&str> {
 }
 
 fn add_topic(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured)]) {
-    // True poses of simulators come before the estimates of a filter.
+    // True poses from simulators take precedence over a filter's estimates.
     let source = if topic.contains("truth") { 0 } else { 1 };
     let logs = &mut found.logs;
     for (at_s, measured) in rows {
@@ -165,7 +166,8 @@ fn add_topic(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured)
         };
         match *measured {
             Measured::Fix(at) => found.positions.push(boat, source, *at_s, at),
-            // The frame of each boat's odometry is its own, so positions on the globe come first.
+            // Each boat's odometry has a frame of its own, so positions on the globe take
+            // precedence.
             Measured::Height(height) => push(Quantity::Height, source, height),
             Measured::Place([x, y, height]) => {
                 push(Quantity::X, 10, x);
@@ -184,7 +186,7 @@ fn add_topic(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured)
     add_thrust(found, boat, topic, rows);
 }
 
-/// Adds the commands of a thruster, if the topic's name says on which side it is.
+/// Adds the commands of a thruster, if the topic's name states its side.
 fn add_thrust(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured)]) {
     let side = match topic {
         _ if topic.contains("left") || topic.contains("port") => Quantity::Port,

@@ -11,7 +11,7 @@ const RIGHT: f64 = 74.0;
 pub(crate) struct Servos(BTreeMap<String, f64>);
 
 impl Servos {
-    /// Stores a parameter if it is one of a servo output.
+    /// Stores a parameter if it belongs to a servo output.
     pub(crate) fn set(&mut self, name: &str, value: f64) {
         if name.starts_with("SERVO") {
             self.0.insert(name.to_owned(), value);

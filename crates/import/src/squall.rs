@@ -91,7 +91,7 @@ fn gateway(bag: &Bag) -> Found {
         .filter_map(|topic| topic.strip_prefix("link/"));
     for boat in links {
         let topic = format!("link/{boat}");
-        // By direction, because a message may be split between chunks.
+        // One for each direction, because a message may be split between chunks.
         let mut sentences = [Sentences::new(boat), Sentences::new(boat)];
         let mut framers = [
             gateway::mavlink::Framer::new(),

@@ -6,7 +6,7 @@ use crate::{Logs, Quantity};
 const GAP_MAX_S: f64 = 2.0;
 /// Time after which a command that is not repeated is no longer known, s.
 const COMMAND_MAX_S: f64 = 5.0;
-/// Time to either side over which a missing yaw rate is estimated from headings, s.
+/// Time on either side over which a missing yaw rate is estimated from headings, s.
 const YAW_S: f64 = 0.5;
 
 /// The measured columns.
@@ -50,7 +50,7 @@ pub fn table(logs: &Logs, boat: &str) -> String {
     text.push('\n');
     let mut before_s = f64::NEG_INFINITY;
     for (at_s, _) in times {
-        // Before the first command, and long after one, nothing is known of the thrust.
+        // Before the first command, and long after the last one, the thrust is unknown.
         let commanded: Vec<Option<f64>> = commands
             .iter()
             .map(|(_, side)| {
@@ -58,7 +58,7 @@ pub fn table(logs: &Logs, boat: &str) -> String {
                 (at_s - given_s <= COMMAND_MAX_S).then_some(value)
             })
             .collect();
-        // Two positions of the same moment, from two sentences.
+        // Two positions at the same moment, from two sentences.
         if *at_s - before_s < 1e-3 || commanded.iter().any(Option::is_none) {
             continue;
         }

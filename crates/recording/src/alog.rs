@@ -3,8 +3,8 @@
 //!
 //! The communities' clocks are aligned by `LOGSTART`. The game begins when `AQUATICUS_GAME` or
 //! `AQUATICUS_GAME_ALL` becomes `play`, or with the first position. A boat's motion is taken from
-//! `NAV_GT_…`, else from `NAV_…` in its own log, else from node reports. Tags without a result from
-//! a tag manager count as boundary tags.
+//! `NAV_GT_…`, else from `NAV_…` in its own log, else from node reports. Tags for which no tag
+//! manager logged a result count as boundary tags.
 
 use crate::logs::{Logs, Quantity, name_of};
 use crate::{Bag, RecordingError};
@@ -36,7 +36,7 @@ const REPORTED: [(&str, Quantity); 4] = [
     ("SPD", Quantity::Speed),
 ];
 
-/// Whether a file is a log, by its content.
+/// Whether a file is a log, judged by its content.
 pub fn is_log(path: &Path) -> bool {
     // Opening a named pipe would block until it has a writer.
     if !path.is_file() {

@@ -86,7 +86,7 @@ pub struct Bag {
     facts: Facts,
     /// Start of the recording: UTC, ns since 1970.
     pub began_utc_ns: u64,
-    /// The facts written at its end; `None` if the file is truncated.
+    /// The facts written at the end of the recording; `None` if the file is truncated.
     pub result: Option<Facts>,
     /// Whether the file is truncated.
     pub is_cut: bool,
@@ -116,7 +116,7 @@ pub struct RecordedMessage<'a> {
     pub number: u32,
     /// Time since the recording began, by the game's clock or the gateway's.
     pub at: SimTime,
-    /// UTC of recording, ns since 1970.
+    /// UTC when the message was recorded, ns since 1970.
     pub utc_ns: u64,
     /// The message; empty if the file can no longer be read (no real message is empty).
     pub bytes: Vec<u8>,
@@ -191,7 +191,7 @@ impl Bag {
     }
 
     /// Calls `take` with the topic, schema, recording time (ns) and content of every ROS 2 message
-    /// in an MCAP file of another program, such as rosbag2.
+    /// in an MCAP file from another program, such as rosbag2.
     ///
     /// # Errors
     /// [`RecordingError`] if it cannot be read or is not an MCAP file.
@@ -220,7 +220,7 @@ impl Bag {
         self.facts.get(key).map_or("", String::as_str)
     }
 
-    /// Its size, bytes.
+    /// The size of the recording, bytes.
     pub fn size(&self) -> u64 {
         self.source.length
     }
@@ -322,7 +322,7 @@ struct Found {
 }
 
 impl Found {
-    /// The contents of a file, with the file itself, decompressed.
+    /// The decompressed file and its contents.
     fn in_source(source: Source) -> Result<(Source, Found, Extent), RecordingError> {
         let source = compressed::expanded(source)?;
         let mut found = Found::default();

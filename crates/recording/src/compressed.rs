@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// Size limit of the decompressed file, which is kept in memory, bytes.
 const BYTES_MAX: u64 = 2 << 30;
-/// Maximum length of the name of a compression, bytes.
+/// Maximum length of a compression's name, bytes.
 const NAME_MAX: u64 = 40;
 
 /// The file with all its chunks decompressed; unchanged if no chunk is compressed.
@@ -43,7 +43,7 @@ pub(crate) fn expanded(source: Source) -> Result<Source, RecordingError> {
             if !name.is_empty() {
                 expand(&source, &body, &name, room, out)?;
             } else if opcode == op::DATA_END {
-                // Its checksum is that of the compressed data.
+                // The old checksum is that of the compressed data.
                 let length = body.end - body.start;
                 out.push(opcode);
                 out.extend(length.to_le_bytes());

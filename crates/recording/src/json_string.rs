@@ -19,8 +19,7 @@ pub(crate) fn wrap(text: &[u8]) -> Vec<u8> {
     [&ENCAPSULATION[..], &length.to_le_bytes(), text, &[0]].concat()
 }
 
-/// Unwraps the JSON of a message. A damaged message is returned whole, which does not parse as
-/// JSON.
+/// Unwraps the JSON of a message. A damaged message is returned whole and does not parse as JSON.
 pub(crate) fn text_of(mut message: Vec<u8>) -> Vec<u8> {
     let text = BEFORE..message.len().saturating_sub(1);
     if message

@@ -1,7 +1,7 @@
 //! Logs of a game's boats as series of measurements, which become a recording of that game.
 //!
 //! Each format has its own reader: [`crate::alog`] for MOOS, and the crate `import` for the others.
-//! Tags without a result from a tag manager count as boundary tags.
+//! Tags for which no tag manager logged a result count as boundary tags.
 
 use crate::{Decision, Ending, Entry, Header, Writer};
 use messages::input::Input;
@@ -16,9 +16,9 @@ use scenario::{Outcome, Scenario, Source, Vehicle};
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-/// The pace of games read from logs: their inputs are not known.
+/// The pace of games read from logs, whose inputs are unknown.
 pub const PACE: &str = "logs";
-/// The name of a game that is not known.
+/// The name of an unknown game.
 const UNKNOWN: &str = "imported";
 /// Time without a position after which a boat's navigation counts as lost, s.
 const SILENCE_S: f64 = 5.0;
@@ -70,7 +70,7 @@ pub enum Quantity {
 /// The contents of a game's logs.
 #[derive(Debug, Default)]
 pub struct Logs {
-    /// By boat, team or neither; by quantity, and by source from the best to the worst.
+    /// Series by boat, team or neither, then by quantity, then by source from best to worst.
     values: BTreeMap<String, BTreeMap<(Quantity, u8), Series>>,
     /// The teams of boats.
     teams: BTreeMap<String, String>,
@@ -154,9 +154,9 @@ impl Logs {
         sources.next().map(|(_, series)| series)
     }
 
-    /// The MCAP file of the game, sorted before. If `is_known`, it is the game of this scenario;
-    /// otherwise the scenario's boats and field are replaced with the logged boats and a field
-    /// around their tracks.
+    /// The MCAP file of the game, whose logs must already be sorted. If `is_known`, it is the game
+    /// of this scenario; otherwise the scenario's boats and field are replaced with the logged
+    /// boats and a field around their tracks.
     ///
     /// # Errors
     /// If the logs do not belong to one game, or a boat is not in it.
@@ -386,7 +386,7 @@ impl Logs {
         })
     }
 
-    /// A boat's, team's or the game's last value at or before a time.
+    /// The last value of a boat, a team or the game at or before a time.
     pub fn newest(&self, whose: &str, quantity: Quantity, at_s: f64) -> Option<f64> {
         Some(self.newest_at(whose, quantity, at_s)?.1)
     }
@@ -427,7 +427,7 @@ impl Logs {
         });
         let mut strategies = game.strategies.clone();
         for strategy in &mut strategies {
-            // That of the base; nobody knows how these boats decided.
+            // Only the name changes: it is not known how these boats decided.
             strategy.name = "unknown".to_owned();
         }
         Scenario {
@@ -466,7 +466,7 @@ fn between(series: &[(f64, f64)], at_s: f64) -> f64 {
     a.1 + (b.1 - a.1) * share
 }
 
-/// A boat or a team, as named in scenarios.
+/// The name of a boat or a team in the form used in scenarios.
 pub fn name_of(text: &str) -> String {
     let fit = |c: char| {
         if c.is_ascii_alphanumeric() {

@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 /// Period of flushes to the system. Each flush closes a chunk, whose index entry (about 500 bytes)
 /// stays in memory until the file ends. With four flushes per second, that came to 5 MB an hour.
 const FLUSH: Duration = Duration::from_secs(1);
-/// Time for which entries accumulate: waking for each one would cost the game more than the writing
-/// itself.
+/// Time for which entries accumulate: waking the thread for each one would cost the game more than
+/// the writing itself.
 const GATHER: Duration = Duration::from_millis(20);
 /// Size of the write buffer, bytes.
 const BUFFER: usize = 1 << 16;

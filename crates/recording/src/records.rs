@@ -2,7 +2,7 @@
 //!
 //! The library's own readers treat a chunk as one unit and would lose a truncated one entirely. Our
 //! chunks are uncompressed, so their records can be read up to the truncation. Compressed files are
-//! decompressed before.
+//! decompressed beforehand.
 
 use crate::RecordingError;
 use crate::source::Source;
@@ -11,7 +11,7 @@ use mcap::records::op;
 use std::fmt::Display;
 use std::ops::Range;
 
-/// Size of opcode and length before every record.
+/// Size of the opcode and the length before every record.
 const PREFIX: u64 = 9;
 /// Offset of the checksum in a chunk, after the times of the first and last message, and the size.
 const CHUNK_CRC_AT: u64 = 3 * 8;

@@ -15,7 +15,7 @@ const UNKNOWN: u64 = u64::MAX;
 trait Bytes: Read + Seek + Send {}
 impl<T: Read + Seek + Send> Bytes for T {}
 
-/// The bytes of a recording, with its length at opening.
+/// The bytes of a recording, and their number when it was opened.
 pub(crate) struct Source {
     reader: Mutex<Reader>,
     /// The number of bytes.
