@@ -57,7 +57,7 @@ struct Vehicle {
     before: Option<Sample>,
 }
 
-/// Writes the log of the shoreside and, if wanted, those of the vehicles in order. Returns the
+/// Writes the log of the shoreside and, if requested, those of the vehicles in order. Returns the
 /// number of logs and the damaged messages.
 ///
 /// # Errors
@@ -131,8 +131,8 @@ impl Shoreside {
     fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
         let log = &mut self.log;
         let time_s = step.time_s;
-        // An event is recorded with the next frame. Its own time comes first, except at the start
-        // of the game.
+        // An event is recorded with the next frame. Its own time is earlier, except at the start of
+        // the game.
         if !std::mem::replace(&mut self.has_begun, true) {
             log.row(time_s, "AQUATICUS_GAME_ALL", "play")?;
         }

@@ -14,7 +14,7 @@ use thiserror::Error;
 /// The differences between two games, A and B.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// The duration of each, s.
+    /// The duration of each game, s.
     pub durations_s: [f64; 2],
     /// Length of the compared part, from the start of both to the end of the shorter, s.
     pub common_s: f64,
@@ -244,7 +244,7 @@ fn kind(event: &EventOutcome) -> Kind {
 }
 
 /// Pairs the events of each kind in order. If the times of two differ too much, the earlier one has
-/// no match, because all following events on the other side are later still.
+/// no match, because all following events of the other game are later still.
 fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> EventDifference {
     let mut counts: BTreeMap<String, [u32; 2]> = BTreeMap::new();
     let mut kinds: BTreeMap<Kind, [Vec<EventOutcome>; 2]> = BTreeMap::new();

@@ -17,7 +17,7 @@ pub struct Response {
     pub heading_rms_deg: Option<f64>,
     /// Speed delay, s: the delay at which speed ahead and order correlate best.
     pub speed_lag_s: Option<f64>,
-    /// Speed ahead over order at that delay, by least squares.
+    /// Ratio of speed ahead to ordered speed at that delay, by least squares.
     pub speed_gain: Option<f64>,
     /// Remaining speed error at that delay, root mean square, m/s.
     pub speed_rms_m_s: Option<f64>,

@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn a_boat_on_a_circle_sails_its_circumference_at_its_speed() {
-        // One turn in 100 s: chords of a tenth of a second are a millionth too short.
+        // One turn in 100 s: chords of a tenth of a second are too short by a millionth.
         let statistics = &statistics(&made_up::circle(20.0, 100.0))[0];
         let round_m = std::f64::consts::TAU * 20.0;
         assert!(

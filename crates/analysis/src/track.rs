@@ -20,7 +20,8 @@ pub struct TrackDifference {
     pub frechet_m: f64,
 }
 
-/// Maximum points per track: time grows with their product, memory with their sum.
+/// Maximum points per track: time grows with the product of both tracks' points, memory with their
+/// sum.
 const SHAPE_POINTS: usize = 2000;
 
 /// Distance between a boat's tracks in two games in their common time; `None` without a common

@@ -137,7 +137,7 @@ impl Engine {
     /// The allowed range of each of the two columns.
     ///
     /// # Errors
-    /// If the boat does not accept them: its missing part, and the commands that it accepts.
+    /// If the boat does not accept them: names its missing part and the commands that it accepts.
     pub fn ranges(&self, pair: Pair) -> Result<[(f64, f64); 2], String> {
         match (self, pair) {
             (Engine::Thrusters(_, thruster), Pair::RadS) => match &thruster.curve {

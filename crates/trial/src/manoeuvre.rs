@@ -20,11 +20,11 @@ pub enum Manoeuvre {
     /// From a straight approach, the inner thruster stops and the outer one is unchanged
     /// (kinematic: full rudder, thrust unchanged), for two turns.
     TurningCircle,
-    /// From a straight approach, differential thrust (kinematic: rudder) is applied to starboard;
-    /// each time the heading passes the angle on that side, it is reversed.
+    /// From a straight approach, differential thrust (kinematic: rudder) is applied to starboard,
+    /// then reversed each time the heading passes the angle on that side.
     Zigzag,
-    /// From a straight approach, full astern until the boat is dead in the water (which itself may
-    /// drift).
+    /// From a straight approach, full astern until the boat is dead in the water (which may itself
+    /// be moving).
     CrashStop,
     /// Full ahead from rest, until the speed is steady.
     Acceleration,
@@ -69,7 +69,7 @@ pub struct Plan {
 /// A performed manoeuvre, from its beginning.
 #[derive(Clone, Debug)]
 pub struct Sailed {
-    /// The track; the first sample ends the approach.
+    /// The track; the first sample is at the end of the approach.
     pub samples: Vec<Sample>,
     /// Speed over the ground at the end of the approach, m/s, averaged over its last 5 s.
     pub approach_m_s: f64,

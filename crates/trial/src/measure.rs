@@ -61,8 +61,8 @@ fn mean(samples: &[Sample], of: impl Fn(&Sample) -> f64) -> f64 {
 }
 
 /// Advance, transfer and tactical diameter as in MSC.137(76): positions of the midship point at
-/// heading changes of 90° and 180°, relative to where the thrusters were set. Steady values are
-/// means over the last whole turn.
+/// heading changes of 90° and 180°, relative to the position at which the thrusters were set.
+/// Steady values are means over the last whole turn.
 fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let first = |angle_rad: f64| {
@@ -113,8 +113,8 @@ fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// The overshoot is how far the heading exceeds the angle between a switch and the next one. The
-/// period is the mean over whole swings after the first switch.
+/// The overshoot between two switches is how far the heading exceeds the angle. The period is the
+/// mean over whole swings after the first switch.
 fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let switches = &sailed.switches;

@@ -1,10 +1,11 @@
-//! The sea as a boat saw it: height, period and direction of the waves from the heights and
+//! The sea as observed by a boat: height, period and direction of the waves from the heights and
 //! velocities of its receiver, and its drift.
 //!
 //! Start with [`ObservedSea::of`]. The boat acts as a wave buoy: it follows waves that are long
 //! compared with its hull. Spectra are means over blocks and orthogonal sine tapers (Riedel and
 //! Sidorenko 1995); intervals come from the delete-one jackknife over blocks. Waves move water
-//! forward under crests, so the mean product of height and velocity points where they go.
+//! forward under crests, so the mean product of height and velocity points in their direction of
+//! travel.
 
 use crate::identify::student_975;
 use primitives::angle::{compass_deg_from_rad, wrap_pi};
@@ -50,22 +51,23 @@ pub struct ObservedWaves {
     pub from_deg: Option<Measured>,
 }
 
-/// Drift over the ground: that of current and wind together.
+/// Drift over the ground due to current and wind together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObservedDrift {
     /// Speed, m/s.
     pub speed_m_s: Measured,
-    /// Compass bearing towards which it leads, degrees.
+    /// Compass bearing towards which the boat drifts, degrees.
     pub toward_deg: f64,
 }
 
-/// What a log says of the sea.
+/// What a log reveals about the sea.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservedSea {
     /// The waves; none if the receiver's noise hides them. If a wind sea and swell have a peak
     /// each, the higher one comes first.
     pub waves: Vec<ObservedWaves>,
-    /// The boat's drift while its thrusters were off; `None` if it cannot be told from none.
+    /// The boat's drift while its thrusters were off; `None` if it cannot be distinguished from
+    /// zero.
     pub drift: Option<ObservedDrift>,
     /// Standard deviation of the receiver's noise in the heights, m; 0 if the log does not show it.
     pub noise_m: f64,
@@ -77,7 +79,7 @@ pub struct ObservedSea {
     pub spectrum: Vec<(f64, f64)>,
 }
 
-/// Why a log says nothing of the sea.
+/// Why a log reveals nothing about the sea.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoSea {
     /// There are too few heights, or they are too far apart.
@@ -86,9 +88,9 @@ pub enum NoSea {
          {least_s:.0} s"
     )]
     Heights {
-        /// Their number.
+        /// The number of heights.
         count: usize,
-        /// Typical time between them, s.
+        /// Typical time between heights, s.
         step_s: f64,
         /// Time needed, s.
         least_s: f64,
@@ -106,11 +108,12 @@ pub enum NoSea {
     },
 }
 
-/// Speed above which a block is not used, m/s: a third of the speed of waves of 2 s.
+/// Speed above which a block is not used, m/s: a third of the speed of waves with a period of 2 s.
 const SLOW_M_S: f64 = 1.0;
 /// Minimum number of blocks for an interval.
 const BLOCKS_MIN: usize = 5;
-/// Number of blocks aimed at, and limits of their length, s: resolution against independence.
+/// Target number of blocks, and limits of their length, s: a trade-off of resolution against
+/// independence.
 const BLOCKS: f64 = 10.0;
 const BLOCK_S: (f64, f64) = (45.0, 120.0);
 /// Longest gap over which heights are interpolated, s; also the longest time between two heights.
@@ -121,12 +124,12 @@ const BAND_HZ: (f64, f64) = (0.05, 2.0);
 const OF_NYQUIST: f64 = 0.9;
 /// Number of tapers per block.
 const TAPERS: usize = 3;
-/// Least ratio of the peak to the valley before it, and to the noise.
+/// Minimum ratio of the peak to the valley before it, and to the noise.
 const CLEAR: f64 = 2.0;
-/// Least motion of a boat along the waves, as a fraction of the water's: a boat that does not move
-/// with them shows no direction.
+/// Minimum motion of a boat along the waves, as a fraction of the water's: a boat that does not
+/// move with them shows no direction.
 const MOVES: f64 = 0.05;
-/// Direction intervals wider than this say nothing, degrees.
+/// Direction intervals wider than this are meaningless, degrees.
 const VAGUE_DEG: f64 = 60.0;
 
 /// Sums over the tapers of a block, or over several blocks.
@@ -141,7 +144,7 @@ struct Block {
 }
 
 impl ObservedSea {
-    /// What this track says of the sea.
+    /// What this track reveals about the sea.
     ///
     /// # Errors
     /// [`NoSea`] if there is nothing to estimate from.
@@ -366,8 +369,8 @@ fn mean(blocks: &[&Block], without: Option<usize>) -> Block {
     sum
 }
 
-/// A value of all blocks, and half its 95 % interval from the values without each one. `off` is the
-/// difference of two values.
+/// A value of all blocks, and half the width of its 95 % interval, from the values without each
+/// block. `off` is the difference of two values.
 fn jackknife(
     blocks: &[&Block],
     of: impl Fn(&Block) -> Option<f64>,
@@ -398,12 +401,13 @@ fn noise_density(hz: &[f64], density: &[f64]) -> f64 {
     density[tail..].iter().sum::<f64>() / (hz.len() - tail) as f64
 }
 
-/// The highest density beyond the slope with which slow errors of the receiver begin.
+/// The highest density after the initial fall that slow errors of the receiver cause in the
+/// spectrum.
 #[derive(Clone, Copy)]
 struct Peak {
     /// Its index.
     at: usize,
-    /// The index of the foot of that slope.
+    /// The index of the foot of that initial fall.
     foot: usize,
 }
 
@@ -413,8 +417,8 @@ fn peak(density: &[f64]) -> Option<Peak> {
     later.map(|at| Peak { at, foot })
 }
 
-/// The frequency of a peak: the centroid of the densities above half of its height, in their fourth
-/// power, because a wave spectrum is wider above its peak (Young 1995).
+/// The frequency of a peak: the centroid, weighted by the fourth power of density, of the part
+/// above half of its height, because a wave spectrum is wider above its peak (Young 1995).
 fn centroid(hz: &[f64], density: &[f64], at: usize) -> f64 {
     let is_high = |i: &usize| density[*i] >= 0.5 * density[at];
     let low = (0..at).rev().take_while(is_high).last().unwrap_or(at);
@@ -433,7 +437,7 @@ fn waves(hz: &[f64], blocks: &[&Block]) -> Vec<ObservedWaves> {
     let Some(Peak { at, foot }) = peak(&density) else {
         return vec![];
     };
-    // A spectrum that rises from its first frequency on has no such slope.
+    // A spectrum that rises from its first frequency on has no initial fall.
     let is_slope = foot > 0 && density[at] < CLEAR * density[foot];
     if is_slope || density[at] < CLEAR * noise {
         return vec![];
@@ -469,7 +473,8 @@ fn part(hz: &[f64], blocks: &[&Block], range: Range<usize>, noise: f64) -> Optio
     let from = |block: &Block| {
         let toward = block.toward[range.clone()].iter();
         let toward = toward.fold(Ned::default(), |sum, toward| sum + *toward);
-        // In deep water, a crest moves forward as fast as the surface rises.
+        // In deep water, the water moves forwards under a crest at the same peak speed as the
+        // surface rises.
         let part = hz.iter().zip(&block.density).take(range.end);
         let part = part.skip(range.start);
         let rising: f64 = part.map(|(hz, density)| TAU * hz * density).sum();
@@ -480,7 +485,7 @@ fn part(hz: &[f64], blocks: &[&Block], range: Range<usize>, noise: f64) -> Optio
     let hs_m = jackknife(blocks, height, |a, b| a - b)?;
     let from_deg = jackknife(blocks, from, turned)
         .filter(|from| from.plus_minus.is_finite() && from.plus_minus < VAGUE_DEG);
-    // A spectrum, wider above its peak, moves the estimate by up to half its resolution.
+    // The spectrum is wider above its peak, which shifts the estimate by up to half the resolution.
     let Measured { value, plus_minus } = jackknife(blocks, period, |a, b| a - b)?;
     let resolution_s = 0.5 * width_hz * value * value;
     let tp_s = Measured {
@@ -494,8 +499,8 @@ fn part(hz: &[f64], blocks: &[&Block], range: Range<usize>, noise: f64) -> Optio
     })
 }
 
-/// The highest other peak, if it is at least a third as high and a valley half as high as itself
-/// separates the two.
+/// The highest other peak, if it is more than a third as high and separated from the first by a
+/// valley less than half its own height.
 fn second(density: &[f64], first: usize, foot: usize) -> Option<usize> {
     let is_apart = |i: &usize| {
         let between = (first.min(*i)..=first.max(*i)).map(|j| density[j]);

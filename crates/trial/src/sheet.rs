@@ -1,4 +1,4 @@
-//! A table from users: a line of names, then numbers. Errors name the file, line and column.
+//! A user's table: a line of names, then numbers. Errors name the file, line and column.
 //!
 //! Reads the output of loggers and spreadsheets: columns separated by commas, semicolons or tabs,
 //! decimal commas, UTF-16, a line of units, and a last line truncated by a power loss.

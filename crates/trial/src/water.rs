@@ -21,7 +21,7 @@ pub fn still_sea() -> Sea {
     }
 }
 
-/// Replaces the mean current of `sea`. Its other currents (tide, shear, eddies) stay.
+/// Replaces the mean current of `sea`. Its other currents (tide, shear, eddies) remain.
 pub fn set_mean_current(sea: &mut Sea, speed_m_s: f64, toward_deg: f64) {
     let toward = Ned::toward_deg(toward_deg);
     let wander = sea

@@ -80,9 +80,9 @@ pub struct ModeQuality {
     pub time_s: f64,
     /// Number of times a boat entered it.
     pub begun: u64,
-    /// Ordered courses more than 45 degrees from the previous one, within the mode.
+    /// Number of ordered courses more than 45 degrees from the previous one, within the mode.
     pub course_jumps: u64,
-    /// Ordered speeds more than 1 m/s from the previous one, within the mode.
+    /// Number of ordered speeds more than 1 m/s from the previous one, within the mode.
     pub speed_jumps: u64,
     /// Time at rest (below 0.2 m/s over the ground), s.
     pub standing_s: f64,

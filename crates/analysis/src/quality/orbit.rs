@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 pub const ORBIT_MIN_S: f64 = 60.0;
 /// Time between examined positions, s.
 const SPACING_S: f64 = 1.0;
-/// Tolerance of positions from the circle: this distance (m), or the same fraction of the radius if
-/// larger. Waves and gusts move a boat by that much.
+/// Tolerated deviation of positions from the circle: a distance (m), or a fraction of the radius if
+/// that is larger. Waves and gusts move a boat by that much.
 const OFF_M: f64 = 1.0;
 const OFF_SHARE: f64 = 0.15;
 /// Radius within which a boat counts as at rest, m.

@@ -1,6 +1,6 @@
 //! The columns and rows of each kind of message. Columns are the fields of its ROS 2 definition,
-//! with a few changes for tables: names for numbers, seconds for nanoseconds, a row for each list
-//! item.
+//! with a few changes for tables: names instead of numbers, seconds instead of nanoseconds, a row
+//! for each list item.
 
 use super::cells::{Cells, flat, text, time};
 use messages::external::{ExternalOrder, NavReport};

@@ -25,8 +25,8 @@ pub struct Estimate {
     pub before: f64,
     /// Its fitted value.
     pub value: f64,
-    /// Half-width of the 95 % confidence interval, provided that errors of different segments are
-    /// independent.
+    /// Half-width of the 95 % confidence interval, assuming that the errors of different segments
+    /// are independent.
     pub plus_minus: f64,
 }
 
@@ -90,7 +90,7 @@ impl Fit {
         ))
     }
 
-    /// A vector of the water, and the larger half of its two intervals.
+    /// A vector of the water, and the larger half-width of its two intervals.
     fn vector(&self, names: [&str; 2]) -> Option<(Ned, f64)> {
         let of = |name| {
             let mut all = self.estimates.iter();
@@ -140,18 +140,18 @@ pub enum NoFit {
 
 /// Correlation above which a warning is given.
 const CONFUSED: f64 = 0.95;
-/// Number of standard deviations below which 97.5 % of a normal distribution lie.
+/// Number of standard deviations below which 97.5 % of a normal distribution lies.
 const NORMAL_975: f64 = 1.96;
-/// Winds from which a search starts, m/s.
+/// Speed of the winds from which searches start, m/s.
 const START_M_S: f64 = 6.0;
-/// Half an interval of the wind above which it counts as not determined, m/s.
+/// Half-width of an interval above which the wind counts as undetermined, m/s.
 const VAGUE_M_S: f64 = 2.0;
 /// Ratio of misfits from which one fit is clearly better: 1 % in each of six channels.
 const CLEARLY: f64 = 1.06;
 /// Number of searches, each with channel weights from the previous residuals.
 const WEIGHINGS: usize = 3;
-/// Minimum standard deviation of a channel, as a fraction of the initial guess, because a log from
-/// a simulation has no noise.
+/// Minimum standard deviation of a channel, as a fraction of the initial guess; needed because a
+/// log from a simulation has no noise.
 const LEAST_SIGMA: f64 = 1e-4;
 
 /// The names of all parameters.
@@ -255,7 +255,7 @@ fn wind_of(sea: &Sea) -> Ned {
 /// clearly better than another is rejected.
 ///
 /// # Errors
-/// [`NoFit::Ambiguous`] with the winds, or as [`fit`].
+/// [`NoFit::Ambiguous`] with the winds, or as for [`fit`].
 pub fn fit_wind(
     boat: &Boat,
     log: &Log,
@@ -439,9 +439,9 @@ fn covariance(
         .ok_or_else(|| NoFit::Undetermined(names()))
 }
 
-/// The standard deviations of the search coordinates by the delete-one jackknife over segments.
-/// White noise gives the same as [`covariance`]; but the errors of a real log last for seconds, and
-/// intervals for white noise then are several times too narrow.
+/// The standard deviations of the search coordinates by the delete-one jackknife over segments. For
+/// white noise the result equals [`covariance`], but the errors of a real log persist for seconds,
+/// and intervals that assume white noise are then several times too narrow.
 fn deviations_by_segment(
     jacobian: &DMatrix<f64>,
     residuals: &DVector<f64>,
@@ -455,7 +455,7 @@ fn deviations_by_segment(
         // The change of the fit without this segment, to first order.
         let others = &all - rows.tr_mul(&rows);
         let Some(factors) = others.cholesky() else {
-            // Only this segment determines some parameter.
+            // Some parameter is determined by this segment alone.
             return vec![f64::INFINITY; jacobian.ncols()];
         };
         let change = factors.solve(&rows.tr_mul(&residuals.rows(border[0], count)));

@@ -1,9 +1,9 @@
 //! The gap between a boat and its model: where the measured motion lies among simulated runs under
-//! the same commands, and which number of the boat file would close it.
+//! the same commands, and which number of the boat file, if changed, would close it.
 //!
 //! Every run restarts from the log at the beginning of each segment, with its own sea and sensor
-//! errors, so that a sound model puts the boat anywhere within the spread with equal probability
-//! (a rank histogram, Hamill 2001).
+//! errors, so if the model is sound, the boat has any rank among the runs with equal probability (a
+//! rank histogram, Hamill 2001).
 
 use super::fit::{Estimate, Fit, NoFit, Quality, fit, problem, promises, qualities, student_975};
 use super::log::{HEADING, Log, SURGE, SWAY, X, YAW_RATE};
@@ -13,15 +13,16 @@ use scenario::boat::Boat;
 
 /// Turn that is timed, degrees.
 pub const TURN_DEG: f64 = 45.0;
-/// Time after a restart that is not compared, s: receivers still report the position before it.
+/// Time after a restart that is not compared, s: receivers still report the position from before
+/// it.
 const SETTLE_S: f64 = 1.0;
 /// Maximum number of compared rows: a longer log is thinned.
 const ROWS_MAX: usize = 20_000;
-/// Speed ahead below which a boat has no sideslip, m/s.
+/// Speed ahead below which sideslip is undefined, m/s.
 const SLIP_M_S: f64 = 0.3;
-/// The quantiles that limit a spread of 95 %.
+/// The quantiles that bound the central 95 %.
 const TAILS: [f64; 2] = [0.025, 0.975];
-/// Number of parameters that are fitted, of those that promise most.
+/// Number of parameters to fit: those that promise most.
 const CANDIDATES: usize = 3;
 
 /// The compared quantities: name and unit.
@@ -55,7 +56,7 @@ type Values = Vec<[f32; 6]>;
 #[derive(Clone, Debug)]
 pub struct Run {
     values: Values,
-    /// The time of the turn in each segment, s; that of the whole segment if there is none.
+    /// The duration of the turn in each segment, s; that of the whole segment if there is no turn.
     turns_s: Vec<f64>,
 }
 
@@ -66,10 +67,10 @@ pub struct Place {
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
-    /// Mean difference of the measurement from the runs' median.
+    /// Mean difference between the measurement and the runs' median.
     pub off: f64,
-    /// Half the 95 % interval of that difference, from the variation between segments; infinite for
-    /// one segment.
+    /// Half-width of that difference's 95 % interval, from the variation between segments; infinite
+    /// for one segment.
     pub plus_minus: f64,
     /// Half the mean width of the runs' central 95 %.
     pub spread: f64,
@@ -128,7 +129,7 @@ impl<'a> Frames<'a> {
         Some(self.of(&points))
     }
 
-    /// The measured state at a start; what is not measured is zero.
+    /// The measured state at a start; unmeasured values are zero.
     fn start(&self, row: usize) -> Point {
         self.log.measured[row].map(|cell| if cell.is_finite() { cell } else { 0.0 })
     }
@@ -297,14 +298,14 @@ impl Ranking {
 /// A change of one number of the boat file.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
-    /// The number, and its value with which the boat fits the log best.
+    /// The number, with the value for which the boat fits the log best.
     pub estimate: Estimate,
     /// Fraction of the squared residuals that the change removes.
     pub explains: f64,
 }
 
 /// The numbers of the boat file whose change, one at a time, would bring the model closest to the
-/// log: the best first. Only changes that are larger than their intervals.
+/// log, best first; only changes larger than their intervals.
 ///
 /// # Errors
 /// [`NoFit`] if the boat cannot be simulated.

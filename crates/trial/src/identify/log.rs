@@ -37,7 +37,7 @@ pub struct Log {
     /// x east, y north, heading (unwrapped), surge, sway, yaw rate; NaN for missing measurements.
     pub(super) measured: Vec<[f64; 6]>,
     pub(super) orders: Orders,
-    /// The row after the last one of each appended log, and of each part of a log with gaps.
+    /// The row after the end of each appended log, and of each part of a log with gaps.
     ends: Vec<usize>,
 }
 

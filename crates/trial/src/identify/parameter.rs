@@ -140,7 +140,7 @@ fn thruster(boat: &mut Boat) -> Option<&mut Thruster> {
 }
 
 impl Parameter {
-    /// Its value in `boat`, if present; 0 for one of the water.
+    /// Its value in `boat`, if present; 0 for a parameter of the water.
     pub fn value(&self, boat: &Boat) -> Option<f64> {
         self.value_in(&Model {
             boat: boat.clone(),

@@ -91,7 +91,7 @@ pub(super) fn rollout(
     Some(points)
 }
 
-/// The true state for a measured one, if the sensors err as they do now.
+/// The true state behind a measured one, given the current sensor errors.
 fn without_errors(measured: &Point, trial_boat: &TrialBoat, view: View) -> Point {
     if view == View::Truth {
         return *measured;
