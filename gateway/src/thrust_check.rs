@@ -25,8 +25,10 @@ pub enum ThrustFault {
         "the thrusters: the heading does not respond to differential thrust: {0:.0} degrees/s at half difference"
     )]
     NoTurn(f64),
-    /// The forward speed (m/s) after 40 s under thrust is too low.
-    #[error("the thrusters: the boat makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
+    /// The mean forward speed (m/s) over 40 s under thrust is too low.
+    #[error(
+        "the thrusters: the boat makes no way under thrust: {0:.1} m/s ahead on average over {WAY_S} s"
+    )]
     NoWay(f64),
     /// The boat goes astern instead of ahead, or does not turn to its ordered heading: error of its
     /// course, degrees.

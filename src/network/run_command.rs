@@ -210,7 +210,7 @@ fn check_keys(args: &Args, scenario: &Scenario) -> Result<()> {
 
 fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
     let mut command = child_process::squall(&["view", "--game", game, "--connect", endpoint])?;
-    // The page's viewers have the rights of the page's own token.
+    // The page has the operator's keys; what its viewers may do depends on the page's token.
     child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Operator);
     args.page.give_to(&mut command);
     ChildProcess::start("the page", command, Stdio::inherit())

@@ -46,7 +46,7 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
         };
         if given.stamp.seq != seq {
             bail!(
-                "decisions {seq} to {} are missing in this recording",
+                "decisions {seq} to {} are missing from this recording",
                 given.stamp.seq.saturating_sub(1)
             );
         }
@@ -258,7 +258,7 @@ mod tests {
         });
         assert_eq!(
             refused(&gap),
-            "decisions 5 to 6 are missing in this recording"
+            "decisions 5 to 6 are missing from this recording"
         );
         let end =
             recorded(|decision| Some(decision).filter(|decision| decision.frame.stamp.seq != 10));

@@ -20,9 +20,9 @@ pub enum Format {
     Dataflash,
     /// A telemetry log of MAVLink: frames with UNIX times.
     Tlog,
-    /// An MCAP file of ROS 2.
+    /// A ROS 2 bag in MCAP.
     Mcap,
-    /// A bag of ROS 1.
+    /// A ROS 1 bag.
     Bag1,
     /// A Squall recording, of a game or of a gateway.
     Squall,

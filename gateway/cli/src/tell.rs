@@ -38,8 +38,8 @@ const STOP_MAX: Duration = Duration::from_secs(10);
 pub struct Args {
     #[command(flatten)]
     words: Words,
-    /// Address of the gateway's control port, as the gateway prints it [default: those of the
-    /// gateways on this machine, or else through the game]
+    /// Address of the gateway's control port, as the gateway prints it [default: that of the
+    /// boat's gateway on this machine; without one, the command goes through the game]
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Option<SocketAddr>,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use primitives::SimTime;
 /// Maximum time step, s; a longer one means that the sim was away.
 const STEP_MAX_S: f64 = 10.0;
 
-/// The properties of a battery and its consumers.
+/// The properties of a battery and its loads.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pack {
     /// Cells in series.

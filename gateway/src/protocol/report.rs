@@ -23,7 +23,7 @@ pub enum Report {
     ForeignOrder,
     /// Another ground station was heard for the first time; operators are notified.
     Station(String),
-    /// The boat's battery and consumers.
+    /// The boat's battery and electrical loads.
     Power(Power),
     /// The boat's present error; `None` means no error.
     Error(Option<String>),
@@ -34,7 +34,7 @@ pub enum Report {
     Home([f64; 2]),
 }
 
-/// Battery and consumers; values that are not measured are missing.
+/// Battery and electrical loads; values that are not measured are missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Power {
     /// Voltage, V.

@@ -127,7 +127,7 @@ pub struct SensorCheck {
     true_deg: Option<f64>,
     /// Mode, operator and thrust.
     pub control: Option<ControlReport>,
-    /// The battery and its consumers.
+    /// The battery and its loads.
     pub(crate) power: Power,
     /// The fault that the boat reports, if any.
     pub(crate) error: Option<String>,

@@ -197,8 +197,9 @@ mod tests {
                 "{wind_m_s}: {got_m_s}"
             );
         }
-        // Known values for a sea of 0.5 m and 3 s: 14 m long, 0.32 m/s and 0.27 m/s on the hull,
-        // 0.066 m/s at the surface, 10.7 and 5.3 N, over a slightly narrower frequency band.
+        // Known values for a sea of 0.5 m and 3 s, over a slightly narrower frequency band:
+        // wavelength 14 m; orbital velocity 0.32 m/s at the surface, 0.27 m/s on the hull; Stokes
+        // drift 0.066 m/s at the surface; drift force 10.7 N from abeam, 5.3 N from ahead.
         sea.waves = Some(waves_from(1.0, 0.5, 3.0, 512));
         let waves = Summary::new(&sea, &boat, &game.field, 1)
             .waves

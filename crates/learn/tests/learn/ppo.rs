@@ -100,8 +100,8 @@ fn adam_goes_as_its_authors_say() {
             && (parameters[1] + 0.9).abs() < 1e-6
     );
     adam.step(&mut parameters, &[0.0, -4.0], 0.1);
-    // Mean 0.9 * 0.3 = 0.27, corrected by 0.19; mean square 0.999 * 0.009 = 0.008991, corrected by
-    // 0.001999.
+    // Mean 0.9 * 0.3 = 0.27, divided by 0.19 to correct its bias; mean square 0.999 * 0.009 =
+    // 0.008991, divided by 0.001999.
     let want = 0.9 - 0.1 * (0.27 / 0.19) / libm::sqrtf(0.008_991 / 0.001_999);
     assert!(
         (parameters[0] - want).abs() < 1e-4,
