@@ -105,7 +105,7 @@ enum Command {
     Whatif(whatif_command::Args),
     /// Describes and plots a sea and its effects on a boat.
     #[command(
-        after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg\n  squall sea --from boat.nmea --out bay.toml"
+        after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg\n  squall sea --from field.nmea --out bay.toml"
     )]
     Sea(sea_command::Args),
     /// Drives one boat through recorded commands or a standard manoeuvre.
