@@ -82,6 +82,9 @@ pub struct ObservedSea {
 /// Why a log reveals nothing about the sea.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoSea {
+    /// The log contains no heights.
+    #[error("the log contains no heights of a satellite receiver")]
+    Missing,
     /// There are too few heights, or they are too far apart.
     #[error(
         "{count} heights, one every {step_s:.1} s; expected heights of a receiver at least once per second for \
@@ -153,6 +156,9 @@ impl ObservedSea {
         let mut steps: Vec<f64> = track.height.windows(2).map(|w| w[1].0 - w[0].0).collect();
         steps.sort_by(f64::total_cmp);
         let step_s = steps.get(steps.len() / 2).copied().unwrap_or(f64::NAN);
+        if steps.is_empty() {
+            return Err(NoSea::Missing);
+        }
         let is_dense = step_s > 0.0 && step_s <= GAP_MAX_S;
         let span_s = match (track.height.first(), track.height.last()) {
             (Some(first), Some(last)) if is_dense && last.0 - first.0 >= least_s => {

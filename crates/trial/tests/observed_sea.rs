@@ -141,6 +141,9 @@ fn calm_water_moving_boats_and_short_logs_give_no_waves() {
         .to_string();
     assert!(text.starts_with("the boat moves at 1.5 m/s"), "{text}");
 
+    let none = observed(&Motion::default()).expect_err("there are no heights");
+    assert_eq!(none, NoSea::Missing);
+
     let short = motion(100.0, |_| [0.0; 3]);
     let text = observed(&short).expect_err("it is short").to_string();
     assert!(text.starts_with("500 heights, one every 0.2 s"), "{text}");
