@@ -110,12 +110,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             .borrow_mut()
             .add_with(|| format!("search {} of {}{left}", step.search, step.searches));
     };
-    let search = if args.fit_wind {
-        identify::fit_wind
-    } else {
-        identify::fit
-    };
-    let fit = search(&boat, &log, &setting, &parameters, &tell);
+    let fit = identify::fit(&boat, &log, &setting, &parameters, &tell);
     progress.borrow().end();
     let fit = fit.with_context(|| format!("cannot fit the boat to {named}"))?;
     screen::print(&table(&boat.name, &named, &fit));

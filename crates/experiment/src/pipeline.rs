@@ -126,13 +126,10 @@ pub fn run_in_order<R: Send>(
 ) {
     let never = AtomicBool::new(false);
     let each = |(): &mut (), i: usize, _: Stop<'_>| run(i);
-    let done = play_in_order(count, (threads, &never), each, |row| {
+    let Ok(()) = play_in_order(count, (threads, &never), each, |row| {
         take(row);
         Ok::<(), std::convert::Infallible>(())
     });
-    match done {
-        Ok(()) => {}
-    }
 }
 
 /// The loop of one thread: plays the next unassigned game until none is left.

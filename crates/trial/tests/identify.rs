@@ -376,7 +376,7 @@ fn found_in_wind(orders: &str) -> Result<Fit, NoFit> {
     };
     let names = ["surge_quadratic", identify::WIND[0], identify::WIND[1]];
     let parameters = identify::parameters(&names.map(str::to_owned), &start)?;
-    identify::fit_wind(&start, &log, &setting(), &parameters, &|_| {})
+    identify::fit(&start, &log, &setting(), &parameters, &|_| {})
 }
 
 #[test]

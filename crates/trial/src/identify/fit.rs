@@ -8,7 +8,6 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector};
 use primitives::Ned;
 use primitives::angle::compass_deg_from_rad;
-use primitives::math;
 use scenario::boat::Boat;
 use scenario::sea::Sea;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -199,8 +198,30 @@ pub struct Step {
 /// Fits `parameters` of `boat` to a log, and reports every step.
 ///
 /// # Errors
-/// The reason, as a [`NoFit`].
+/// The reason, as a [`NoFit`]; [`NoFit::Ambiguous`] if several winds explain the log.
 pub fn fit(
+    boat: &Boat,
+    log: &Log,
+    setting: &Setting,
+    parameters: &[Parameter],
+    tell: &dyn Fn(Step),
+) -> Result<Fit, NoFit> {
+    let from = |setting: &Setting| search(boat, log, setting, parameters, tell);
+    if has_wind(parameters) {
+        fit_wind(setting, from)
+    } else {
+        from(setting)
+    }
+}
+
+fn has_wind(parameters: &[Parameter]) -> bool {
+    parameters
+        .iter()
+        .any(|parameter| WIND.contains(&parameter.name))
+}
+
+/// Searches from the initial boat and the water of `setting`.
+fn search(
     boat: &Boat,
     log: &Log,
     setting: &Setting,
@@ -241,27 +262,16 @@ pub fn fit(
 fn wind_of(sea: &Sea) -> Ned {
     let wind = sea.wind.as_ref();
     wind.map_or(Ned::default(), |wind| {
-        let (sin, cos) = math::sin_cos(wind.from_rad);
-        let unit = Ned {
-            north: -cos,
-            east: -sin,
-        };
-        unit.scaled(wind.speed_10m_m_s)
+        Ned::toward_deg(wind.from_rad.to_degrees() + 180.0).scaled(wind.speed_10m_m_s)
     })
 }
 
-/// Like [`fit`], with the mean wind. A wind and its opposite can explain a log almost equally well,
-/// since drag hides the difference; so the search starts from several winds, and a wind that is not
+/// A fit with the mean wind. A wind and its opposite can explain a log almost equally well, since
+/// drag hides the difference; so the search starts from several winds, and a wind that is not
 /// clearly better than another is rejected.
-///
-/// # Errors
-/// [`NoFit::Ambiguous`] with the winds, or as for [`fit`].
-pub fn fit_wind(
-    boat: &Boat,
-    log: &Log,
+fn fit_wind(
     setting: &Setting,
-    parameters: &[Parameter],
-    tell: &dyn Fn(Step),
+    search: impl Fn(&Setting) -> Result<Fit, NoFit>,
 ) -> Result<Fit, NoFit> {
     let mut fits: Vec<Fit> = vec![];
     let mut failed = NoFit::Nothing;
@@ -273,7 +283,7 @@ pub fn fit_wind(
                 Ned::toward_deg(from_deg + 180.0).scaled(START_M_S),
             );
         }
-        match fit(boat, log, &setting, parameters, tell) {
+        match search(&setting) {
             Ok(fit) => fits.push(fit),
             Err(why) => failed = why,
         }
@@ -314,10 +324,7 @@ pub(super) fn problem<'a>(
     let model = Model {
         boat: boat.clone(),
         current: setting.sea.current.mean_m_s,
-        wind: parameters
-            .iter()
-            .any(|parameter| WIND.contains(&parameter.name))
-            .then(|| wind_of(&setting.sea)),
+        wind: has_wind(parameters).then(|| wind_of(&setting.sea)),
     };
     let knob = |parameter: &Parameter| {
         Knob::new(*parameter, &model).ok_or(NoFit::NotThere(parameter.name))

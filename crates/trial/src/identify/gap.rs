@@ -123,21 +123,16 @@ impl<'a> Frames<'a> {
     /// A run of this boat, as its sensors see it; `None` if its state becomes non-finite.
     pub fn run(&self, boat: &Boat, setting: &Setting) -> Option<Run> {
         let firsts = &self.segments[..self.segments.len() - 1];
-        let starts: Vec<Point> = firsts.iter().map(|row| self.start(*row)).collect();
+        let starts: Vec<Point> = firsts.iter().map(|row| self.log.start(*row)).collect();
         let view = View::Sensors;
         let points = rollout(boat, setting, self.log, (&self.segments, &starts), view)?;
         Some(self.of(&points))
     }
 
-    /// The measured state at a start; unmeasured values are zero.
-    fn start(&self, row: usize) -> Point {
-        self.log.measured[row].map(|cell| if cell.is_finite() { cell } else { 0.0 })
-    }
-
     fn of(&self, points: &[Point]) -> Run {
         let value = |row: &Row| {
             let first = self.segments[row.segment];
-            values(&self.start(first), &points[row.at]).map(|value| value as f32)
+            values(&self.log.start(first), &points[row.at]).map(|value| value as f32)
         };
         let turn = |border: &[usize]| {
             let start_s = self.log.times[border[0]].as_s();

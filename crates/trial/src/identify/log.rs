@@ -1,5 +1,6 @@
 //! A log of a boat: its commands and its measurements.
 
+use super::rollout::Point;
 use crate::{Engine, LONGEST_S, Mistake, Orders, Sheet};
 use primitives::SimTime;
 use primitives::angle::wrap_pi;
@@ -120,6 +121,11 @@ impl Log {
         self.ends.extend(other.ends.iter().map(|end| rows + end));
         self.measured.extend_from_slice(&other.measured);
         self.orders.append(&other.orders, shift);
+    }
+
+    /// The measured state at a row; what is not measured is zero.
+    pub(super) fn start(&self, row: usize) -> Point {
+        self.measured[row].map(|cell| if cell.is_finite() { cell } else { 0.0 })
     }
 
     fn are_of_one_log(&self, a: usize, b: usize) -> bool {

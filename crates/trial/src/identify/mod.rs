@@ -11,7 +11,7 @@ mod problem;
 mod rollout;
 
 pub(crate) use fit::student_975;
-pub use fit::{Confused, Estimate, Fit, NoFit, Quality, Step, fit, fit_wind, names, parameters};
+pub use fit::{Confused, Estimate, Fit, NoFit, Quality, Step, fit, names, parameters};
 pub use gap::{Band, Change, Frames, Gap, Place, QUANTITIES, Run, TURN_DEG, changes};
 pub use log::Log;
 pub use parameter::{CURRENT, PARAMETERS, Parameter, WIND};

@@ -30,7 +30,7 @@ pub struct Parameter {
 
 /// The parameters of the mean current, m/s.
 pub const CURRENT: [&str; 2] = ["current_east", "current_north"];
-/// The parameters of the mean wind, m/s. They need [`fit_wind`](super::fit_wind).
+/// The parameters of the mean wind, m/s.
 pub const WIND: [&str; 2] = ["wind_east", "wind_north"];
 
 /// All parameters, in the order of reports.

@@ -73,9 +73,10 @@ impl<'a> Problem<'a> {
         let fitted = (0..6)
             .filter(|channel| cells.iter().any(|(_, of)| of == channel))
             .collect();
-        let known =
-            |row: &usize| log.measured[*row].map(|cell| if cell.is_finite() { cell } else { 0.0 });
-        let starts = segments[..segments.len() - 1].iter().map(known).collect();
+        let starts = segments[..segments.len() - 1]
+            .iter()
+            .map(|row| log.start(*row))
+            .collect();
         let at = DVector::zeros(knobs.len());
         let mut problem = Problem {
             model,
