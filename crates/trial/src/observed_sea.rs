@@ -188,8 +188,8 @@ impl ObservedSea {
             let speed_m_s = speeds.get(speeds.len() / 2).copied().unwrap_or(0.0);
             return Err(NoSea::UnderWay { speed_m_s, block_s });
         }
-        let all = mean(&used, None);
-        let noise = noise_density(&hz, &all.density);
+        let averages = Averages::of(&used);
+        let noise = noise_density(&hz, &averages.all.density);
         let is_free = |start_s: &f64| {
             let until_s = start_s + block_s;
             let is_off = |thrust: &&Series| {
@@ -206,12 +206,12 @@ impl ObservedSea {
             .map(|(_, block)| block)
             .collect();
         Ok(ObservedSea {
-            waves: waves(&hz, &used),
+            waves: waves(&hz, &averages, noise),
             drift: drift(&free),
             noise_m: (noise * 0.5 / step_s).sqrt(),
             block_s,
             blocks: [used.len(), blocks.len()],
-            spectrum: hz.into_iter().zip(all.density).collect(),
+            spectrum: hz.into_iter().zip(averages.all.density).collect(),
         })
     }
 
@@ -375,24 +375,39 @@ fn mean(blocks: &[&Block], without: Option<usize>) -> Block {
     sum
 }
 
+/// The mean of blocks, and the means without each one.
+struct Averages {
+    all: Block,
+    without: Vec<Block>,
+}
+
+impl Averages {
+    fn of(blocks: &[&Block]) -> Averages {
+        Averages {
+            all: mean(blocks, None),
+            without: (0..blocks.len()).map(|i| mean(blocks, Some(i))).collect(),
+        }
+    }
+}
+
 /// A value of all blocks, and half the width of its 95 % interval, from the values without each
 /// block. `off` is the difference of two values.
 fn jackknife(
-    blocks: &[&Block],
+    averages: &Averages,
     of: impl Fn(&Block) -> Option<f64>,
     off: impl Fn(f64, f64) -> f64,
 ) -> Option<Measured> {
-    let value = of(&mean(blocks, None))?;
-    let count = blocks.len() as f64;
+    let value = of(&averages.all)?;
+    let count = averages.without.len();
     let mut squares = 0.0;
-    for i in 0..blocks.len() {
-        let difference = off(of(&mean(blocks, Some(i)))?, value);
+    for block in &averages.without {
+        let difference = off(of(block)?, value);
         squares += difference * difference;
     }
-    let deviation = ((count - 1.0) / count * squares).sqrt();
+    let deviation = ((count as f64 - 1.0) / count as f64 * squares).sqrt();
     Some(Measured {
         value,
-        plus_minus: student_975(blocks.len()) * deviation,
+        plus_minus: student_975(count) * deviation,
     })
 }
 
@@ -437,10 +452,9 @@ fn centroid(hz: &[f64], density: &[f64], at: usize) -> f64 {
     (low..=high).map(|i| hz[i] * weight(i)).sum::<f64>() / sum
 }
 
-fn waves(hz: &[f64], blocks: &[&Block]) -> Vec<ObservedWaves> {
-    let Block { density, .. } = mean(blocks, None);
-    let noise = noise_density(hz, &density);
-    let Some(Peak { at, foot }) = peak(&density) else {
+fn waves(hz: &[f64], averages: &Averages, noise: f64) -> Vec<ObservedWaves> {
+    let density = &averages.all.density;
+    let Some(Peak { at, foot }) = peak(density) else {
         return vec![];
     };
     // A spectrum that rises from its first frequency on has no initial fall.
@@ -449,7 +463,7 @@ fn waves(hz: &[f64], blocks: &[&Block]) -> Vec<ObservedWaves> {
         return vec![];
     }
     let whole = foot..hz.len();
-    let parts = match second(&density, at, foot) {
+    let parts = match second(density, at, foot) {
         None => vec![whole],
         Some(other) => {
             let lowest = |a: &usize, b: &usize| density[*a].total_cmp(&density[*b]);
@@ -457,14 +471,14 @@ fn waves(hz: &[f64], blocks: &[&Block]) -> Vec<ObservedWaves> {
             vec![foot..valley, valley..hz.len()]
         }
     };
-    let part = |range: Range<usize>| part(hz, blocks, range, noise);
+    let part = |range: Range<usize>| part(hz, averages, range, noise);
     let mut waves: Vec<ObservedWaves> = parts.into_iter().filter_map(part).collect();
     waves.sort_by(|a, b| b.hs_m.value.total_cmp(&a.hs_m.value));
     waves
 }
 
 /// The waves in a range of the frequencies, with their peak.
-fn part(hz: &[f64], blocks: &[&Block], range: Range<usize>, noise: f64) -> Option<ObservedWaves> {
+fn part(hz: &[f64], averages: &Averages, range: Range<usize>, noise: f64) -> Option<ObservedWaves> {
     let width_hz = hz[1] - hz[0];
     let height = |block: &Block| {
         let above: f64 = block.density[range.clone()].iter().map(|d| d - noise).sum();
@@ -488,11 +502,11 @@ fn part(hz: &[f64], blocks: &[&Block], range: Range<usize>, noise: f64) -> Optio
             .then(|| compass_deg_from_rad(toward.direction_rad() + PI))
     };
     let turned = |a: f64, b: f64| wrap_pi((a - b).to_radians()).to_degrees();
-    let hs_m = jackknife(blocks, height, |a, b| a - b)?;
-    let from_deg = jackknife(blocks, from, turned)
+    let hs_m = jackknife(averages, height, |a, b| a - b)?;
+    let from_deg = jackknife(averages, from, turned)
         .filter(|from| from.plus_minus.is_finite() && from.plus_minus < VAGUE_DEG);
     // The spectrum is wider above its peak, which shifts the estimate by up to half the resolution.
-    let Measured { value, plus_minus } = jackknife(blocks, period, |a, b| a - b)?;
+    let Measured { value, plus_minus } = jackknife(averages, period, |a, b| a - b)?;
     let resolution_s = 0.5 * width_hz * value * value;
     let tp_s = Measured {
         value,
@@ -521,10 +535,11 @@ fn drift(blocks: &[&Block]) -> Option<ObservedDrift> {
     if blocks.len() < BLOCKS_MIN {
         return None;
     }
-    let toward = mean(blocks, None).drift_m_s;
+    let averages = Averages::of(blocks);
+    let toward = averages.all.drift_m_s;
     let unit = toward.scaled(1.0 / toward.length().max(f64::MIN_POSITIVE));
     let speed = |block: &Block| Some(block.drift_m_s.dot(unit));
-    let speed_m_s = jackknife(blocks, speed, |a, b| a - b)?;
+    let speed_m_s = jackknife(&averages, speed, |a, b| a - b)?;
     (speed_m_s.value > speed_m_s.plus_minus).then_some(ObservedDrift {
         speed_m_s,
         toward_deg: compass_deg_from_rad(toward.direction_rad()),
