@@ -19,7 +19,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const KEEPS_ON_S: f64 = 15.0;
 /// Time after which a contact is assumed to be at rest, s.
 const STILL_AFTER_S: f64 = 30.0;
-/// Time without a fix after which a boat of the team is dead reckoned, s: with the usual delays, a
+/// Age of a teammate's fix beyond which its position is dead-reckoned, s. With the usual delays, a
 /// boat moves by less than a receiver's error, and rotating the motion of a whole fleet takes time.
 const LATE_S: f64 = 0.5;
 /// Maximum number of boats that are compared with a place one by one.
