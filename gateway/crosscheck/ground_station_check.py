@@ -1,4 +1,4 @@
-"""The emulated ArduPilot boat against dronekit and MAVProxy, unmodified, used as for driving a Rover.
+"""Tests the emulated ArduPilot boat with dronekit and MAVProxy, unmodified and used as they drive a Rover.
 
     ground_station_check.py PATH/OF/squall
 
@@ -80,7 +80,7 @@ def drive_with_dronekit(port):
 
 
 def reload(commands):
-    """The number of the boat's waypoints."""
+    """Downloads the boat's mission; returns the number of its waypoints."""
     commands.download()
     commands.wait_ready()
     return commands.count
@@ -101,7 +101,7 @@ class MavProxy:
             return file.read()
 
     def type(self, line, words=None):
-        """A command, and the words that MAVProxy prints in reply."""
+        """Types a command; if words are given, waits until MAVProxy prints them."""
         before = len(self.printed())
         self.process.stdin.write(line + "\n")
         self.process.stdin.flush()
@@ -125,7 +125,7 @@ def drive_with_mavproxy(port, observer, folder):
         return wait_for(observer, "where it is", "GLOBAL_POSITION_INT")
 
     def moves(line, north_m, east_m, seconds, times=1):
-        """Repeats a command for this many seconds, after which the boat has the resulting state."""
+        """Repeats a command for this many seconds, then checks how far the boat has moved."""
         before = at()
         for _ in range(times):
             proxy.type(line)

@@ -1,10 +1,10 @@
-"""The emulated boat and the gateway against pymavlink, the package used by most ground stations for ArduPilot.
+"""Tests the emulated boat and the gateway with pymavlink, the package used by most ground stations for ArduPilot.
 
     pymavlink_check.py PATH/OF/squall
 
 First, pymavlink drives the emulated boat over UDP and TCP, as a ground station does. It then emulates a minimal boat,
-which the gateway must stop, and one that interprets set-points like ArduPilot's Rover, which must go south. Last, it
-prints how fast SITL's JSON back end replies, beside a bare UDP echo. Exits with an error at the first failed check.
+which the gateway must stop, and one that interprets set-points like ArduPilot's Rover, which must go south. Finally, it
+compares the reply times of SITL's JSON back end and of a bare UDP echo. Exits with an error at the first failed check.
 """
 
 import json
@@ -89,7 +89,7 @@ def check(condition, what):
 
 
 def wait_for(link, what, kind, is_it=lambda message: True, limit_s=LIMIT_S):
-    """The first message of the given kind that satisfies a condition."""
+    """Waits for a message of the given kind that satisfies a condition, and returns it."""
     end = time.monotonic() + limit_s
     while time.monotonic() < end:
         message = link.recv_match(type=kind, blocking=True, timeout=0.5)
@@ -100,7 +100,7 @@ def wait_for(link, what, kind, is_it=lambda message: True, limit_s=LIMIT_S):
 
 
 def command(link, what, number, *params, result=mav.MAV_RESULT_ACCEPTED):
-    """A command, and its acknowledgement."""
+    """Sends a command and checks its acknowledgement."""
     params = [*params, *[0] * (7 - len(params))]
     link.mav.command_long_send(link.target_system, link.target_component, number, 0, *params)
     ack = wait_for(link, f"{what} is acknowledged", "COMMAND_ACK", lambda ack: ack.command == number)
@@ -112,7 +112,7 @@ def heartbeat_of(mode, armed):
 
 
 def drive(link, seconds, send):
-    """Sends a set-point five times a second; the last position and heading."""
+    """Sends a set-point five times a second; returns the last position and heading."""
     end = time.monotonic() + seconds
     position = None
     while time.monotonic() < end:
@@ -257,7 +257,7 @@ def play_boat(processes):
     sent += boat.serve(LIMIT_S, lambda boat: False)
     zeros = [message for message in sent if message.get_type() == "SET_ATTITUDE_TARGET"]
     zero = lambda message: (message.thrust, message.body_yaw_rate, message.type_mask) == (0.0, 0.0, 0b10000011)
-    check(len(zeros) >= 3 and all(zero(message) for message in zeros), "its last set-points are zero, and so are all others")
+    check(len(zeros) >= 3 and all(zero(message) for message in zeros), "all set-points are zero, including the last")
 
 
 class Rover(Boat):
@@ -328,7 +328,7 @@ def firmware_at(port):
 
 
 def reply_times(firmware, first, count=1200):
-    """The times until the replies to servo outputs, p50 and p99 in ms, without the steps that wait for the game's next decision."""
+    """Reply times to servo outputs, p50 and p99 in ms, except for the steps that wait for the game's next decision."""
     times, last = [], None
     for step in range(first, first + count):
         outputs = struct.pack("<HHI16H", 18_458, 1200, step, *[1500] * 16)

@@ -1,4 +1,4 @@
-"""Our NMEA codec against pynmea2, both ways: `pynmea2_check.py path/to/peer` (the example of this crate).
+"""Checks our NMEA codec against pynmea2 in both directions: `pynmea2_check.py path/to/peer` (the example of this crate).
 
 1. pynmea2 reads our sentences and finds the same values.
 2. We read the sentences that pynmea2 renders from those values, and sentences assembled here.
@@ -33,7 +33,7 @@ def time_ms(time):
 
 
 def place(msg):
-    # By the class, since a WPL of pynmea2 has coordinates but not this mixin.
+    # Through the class, because pynmea2's WPL has coordinates but lacks this mixin.
     fix = pynmea2.nmea_utils.LatLonFix
     return {
         "lat_deg": fix.latitude.fget(msg) if msg.lat else None, "lon_deg": fix.longitude.fget(msg) if msg.lon else None
@@ -104,7 +104,7 @@ def values_of(msg):
 
 
 def compare(ours, theirs, wire):
-    """Fails unless both have the same values; `ours` are texts."""
+    """Fails unless both have the same values; `ours` are strings."""
     assert ours.keys() == theirs.keys(), (sorted(ours), sorted(theirs), wire)
     for name, text in ours.items():
         value = theirs[name]

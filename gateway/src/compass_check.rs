@@ -35,7 +35,8 @@ const SCATTER_MIN_M_S: f64 = 0.15;
 /// Consecutive runs are correlated. In a simulated day in a gale (`tests/gale`), 4.5 were too few.
 const OFFSET_MAX_RAD: f64 = 0.25;
 const SIGMAS: f64 = 5.0;
-/// Maximum length of the mean of all headings as unit vectors: 0.88 for headings 60 degrees apart.
+/// Maximum length of the mean of all headings as unit vectors: two headings must be at least 57
+/// degrees apart.
 const MEAN_HEADING_MAX: f64 = 0.88;
 /// A boat that makes a smaller fraction of its ordered speed reveals nothing about its compass.
 const SHARE_MIN: f64 = 0.2;
@@ -79,7 +80,7 @@ impl CompassCheck {
         let gap_s = self
             .began
             .map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
-        // The sums of a piece assume steady flow; across a gap the boat may have turned.
+        // A piece assumes that data arrive steadily: the boat may have turned during a gap.
         if gap_s > GAP_MAX_S {
             self.interrupt();
             self.speed_m_s = ordered_m_s;
@@ -263,7 +264,7 @@ mod tests {
             assert_eq!(
                 sailed(&[10.0, 100.0, 250.0], 5.0, 1.0, current).fault_rad(),
                 None,
-                "that is its deviation"
+                "that is a normal deviation"
             );
         }
     }

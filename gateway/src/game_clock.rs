@@ -158,7 +158,7 @@ mod tests {
         assert_eq!(
             check(&mut clock, 100.0, 7.0, 6.9),
             OrderTime::BeforeJoining,
-            "nobody has let it in"
+            "the boat has not joined"
         );
         clock = joined(100.0, 7.0);
         for before_s in [6.99, 0.0, -1e300] {
@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(
             check(&mut clock, 200.2, 7.1, 7.0),
             OrderTime::BeforeJoining,
-            "of another game"
+            "from another game"
         );
         assert_eq!(
             check(&mut clock, 200.2, 1000.1, 1000.0),

@@ -1,8 +1,9 @@
-//! A field laid on the globe: metres north and east of a datum, and back to latitude and longitude.
+//! Places a field on the globe: converts metres north and east of a datum to latitude and
+//! longitude, and back.
 //!
 //! Distance and azimuth are those of the geodesic from the datum on the WGS 84 ellipsoid (Karney
-//! 2013, by geographiclib): the azimuthal equidistant map. Everything on one bearing from the datum
-//! is on one line, at its true distance.
+//! 2013, by geographiclib): the azimuthal equidistant map. All points on one bearing from the datum
+//! lie on a straight line, at their true distances.
 //!
 //! - On a plane that touches the ellipsoid at the datum (ENU), distances are `s^3 / 6 R^2` shorter:
 //!   4 µm at 1 km, 4 mm at 10 km.

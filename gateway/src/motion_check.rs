@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(
             stuck(2.0, |velocity| Some(velocity.scaled(0.5))),
             None,
-            "within what fixes may step"
+            "within the step of a fix"
         );
         assert_eq!(
             stuck(0.0, |_| Some(Ned {

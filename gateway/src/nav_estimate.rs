@@ -219,8 +219,8 @@ impl NavEstimator {
 
     fn take_fix(&mut self, now: SimTime, fix: &protocol::Fix) -> bool {
         let doubt = self.doubt_of(fix);
-        // A boat may send the same fix twice, in two sentences. Only the second may contain
-        // evidence against it.
+        // A boat may send the same fix in two sentences. Sometimes only the second one shows that
+        // the fix is bad.
         if self.is_repeated(fix.time, fix.at) {
             self.known.doubt = doubt.or(self.known.doubt);
             return false;
@@ -287,7 +287,7 @@ impl NavEstimator {
                 self.known.velocity = None;
                 self.known.motion.jump();
                 self.known.compass.interrupt();
-            // A burst of fixes would divide their noise by nearly zero.
+            // Not in a burst of fixes, where the noise would be divided by nearly zero.
             } else if !self.is_velocity_reported(now) && since_s > 0.05 {
                 self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
             }
@@ -295,7 +295,7 @@ impl NavEstimator {
                 .known
                 .thrust_at
                 .is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
-            // The position is the same in every digit. Without thrust, a boat may well lie still.
+            // Without thrust, the position of a boat at rest may well stay the same in every digit.
             self.known.still_since =
                 (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
         }

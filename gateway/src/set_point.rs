@@ -102,8 +102,8 @@ impl SetPointMapper {
         self.within_limits(now, thrust, difference)
     }
 
-    /// The set-point for a speed and a heading, given as the clockwise turn from the boat's
-    /// heading.
+    /// The set-point for a heading and a speed. The second number is the clockwise turn from the
+    /// boat's heading to the ordered one.
     fn steered(
         &mut self,
         now: SimTime,

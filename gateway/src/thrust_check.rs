@@ -238,7 +238,7 @@ impl ThrustCheck {
         let growth = match math::length(surge_m_s, sway_m_s) {
             speed_m_s if off_rad.abs() < ASTRAY_RAD || speed_m_s < ASTRAY_FROM_M_S => -2.0,
             _ if self.turn_rad_s * off_rad.signum() > ASTRAY_TURN_RAD_S => 0.0,
-            // The boat moves away from its destination with every second.
+            // The boat keeps moving away from its destination.
             _ if off_rad.abs() > ASTRAY_AWAY_RAD => 2.0,
             _ => 1.0,
         };
@@ -339,7 +339,7 @@ mod tests {
 
     #[test]
     fn a_heading_that_does_not_follow_the_thrust_difference_is_found_in_its_time() {
-        for (turn_deg_s, words) in [(0.0, "held by the wind"), (5.0, "turned by it")] {
+        for (turn_deg_s, words) in [(0.0, "held by the wind"), (5.0, "turned by the wind")] {
             let (after_s, fault) = first_fault(weaving, |_| turn_deg_s, 0.5).expect(words);
             assert!(
                 after_s < 60.0 && matches!(fault, ThrustFault::NoTurn(_)),

@@ -1,4 +1,4 @@
-//! `gateway check`: a boat's sensor check; with a vehicle, the pre-flight check before arming.
+//! `gateway check`: checks a boat's sensors and, for a named vehicle, whether it may be armed.
 
 use super::preflight_report;
 use super::swing_guide::{Guide, guided_checks};
@@ -43,8 +43,8 @@ pub struct Args {
     /// Runs the pre-flight check for this vehicle on the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
-    /// Gateway file, or its name, with which to drive the boat [default: a Surveyor with
-    /// conservative limits]
+    /// Gateway file (path or name) that defines how the boat is driven and stopped [default: a
+    /// Surveyor with conservative limits]
     #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
     /// Guides you through a compass swing and a propeller test, in which you drive the boat by

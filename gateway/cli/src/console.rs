@@ -21,9 +21,9 @@ use std::time::{Duration, Instant};
 
 /// Interval for reading this machine's registry and for looking for a missing game.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
-/// Number of attempts after which the session itself may be broken.
+/// Number of failed attempts after which a new session is opened, in case the old one is broken.
 const ATTEMPTS: u64 = 20;
-/// The timeouts that the page uses.
+/// The timeouts, as on the web page.
 const PATIENCE: Patience = Patience {
     silence: Duration::from_secs(5),
     missing: Duration::from_secs(1),
@@ -132,7 +132,7 @@ impl Console {
     fn read_lines(&self) {
         let is_terminal = std::io::stdin().is_terminal();
         let (sender, lines) = std::sync::mpsc::channel();
-        // A thread waiting for a key cannot be ended; it ends with the process.
+        // A thread that is waiting for a key cannot be stopped; it ends with the process.
         std::thread::spawn(move || {
             for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
                 if sender

@@ -262,7 +262,7 @@ mod tests {
         assert_eq!(told("disarmed"), "disarmed (was armed)");
         for to in [
             "failsafe: the link is down",
-            "e-stopped (by an E-stop of us)",
+            "e-stopped (by an E-stop of this boat)",
         ] {
             assert_eq!(told(to), format!("{} (was armed)", style::bad(to)));
         }

@@ -19,9 +19,9 @@ use std::time::Duration;
 
 /// Interval between stop commands.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Minimum time to keep sending: single sentences may be lost.
+/// Minimum time to keep sending, because single sentences may be lost.
 const SAY: Duration = Duration::from_millis(500);
-/// Timeout for a gateway that holds the link.
+/// Timeout for the answer of a gateway that holds the link.
 const ANSWER: Duration = Duration::from_secs(1);
 /// Capacity of the event queue.
 const EVENTS_MAX: usize = 4096;

@@ -15,7 +15,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 const LONGEST_S: f64 = 600.0;
 /// Deviation above which the compass should be corrected first, degrees.
 const DEVIATION_MAX_DEG: f64 = 14.0;
-/// Minimum thrust that counts, per cent.
+/// Minimum reported thrust that counts as ahead or astern, per cent.
 const THRUST_MIN_PCT: f64 = 10.0;
 
 /// Asks questions at the terminal.
@@ -174,7 +174,7 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
         ];
     });
     let turned = guide.is_agreed(
-        "Did both propellers turn both ways, without noise?",
+        "Did both propellers turn both ways, without unusual noise?",
         listener,
     );
     let word = |is: bool| if is { "seen" } else { "not seen" };

@@ -214,7 +214,7 @@ fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
     let vehicle = &args.words.vehicle;
     if let Some(port) = ports_meant(args)?.first() {
         match port.ask(&GatewayCommand::boat(vehicle, command.clone())) {
-            // That gateway may be ending; its successor is found through the game.
+            // That gateway may be shutting down; its successor is found through the game.
             Err(error @ BusError::Use { .. }) if args.gateway.is_none() => {
                 terminal::remark(&error.to_string())
             }

@@ -14,7 +14,7 @@ use proptest::test_runner::TestRunner;
 use sentences::{Domain, on_the_globe, sentences};
 use std::io::{BufRead, Write};
 
-/// The sentences that `write` writes.
+/// Number of sentences that `write` writes.
 const COUNT: u32 = 3200;
 
 fn main() {
@@ -45,7 +45,7 @@ fn write() {
         )
     };
     let sentences =
-        sentences(&domain).prop_filter("a download writes nothing as 0", |s| !is_download(s));
+        sentences(&domain).prop_filter("a download writes None as 0", |s| !is_download(s));
     let mut runner = TestRunner::deterministic();
     let mut out = std::io::stdout().lock();
     for _ in 0..COUNT {

@@ -1,5 +1,5 @@
-//! The nmea crate reads our sentences and we read the sentences that it can read, with the same
-//! values.
+//! Checks our codec against the nmea crate: both must read the same values from our sentences and
+//! from those of other devices.
 //!
 //! The crate has no writer. The sentences of the second test are therefore assembled in this file,
 //! with the variations found among devices: leading zeros, more or fewer decimal places, and empty

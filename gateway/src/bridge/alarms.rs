@@ -1,4 +1,5 @@
-//! Faults that the boat itself reports: its error code, a leak, and abnormal thruster currents.
+//! Alarms from the boat's own reports: its error code, its tilt, a leak, and abnormal thruster
+//! currents.
 //!
 //! None of these stops the boat: operators should see the alarm and decide.
 
@@ -144,8 +145,8 @@ impl Alarms {
     ) {
         let ordered = command.and_then(ordered_pct);
         // An alarm, not a failsafe: the accuracy of these currents is not published, and a boat
-        // stopped for a faulty sensor drifts. They can become failsafes once it is known what is
-        // normal.
+        // that is stopped because of a faulty sensor drifts. Such currents can cause failsafes once
+        // their normal range is known.
         for wrong in WRONGS {
             for side in [0, 1] {
                 let amps = self.found(wrong, side, power, ordered);
@@ -270,7 +271,7 @@ mod tests {
         assert_eq!(
             (events.len(), alarms.texts()),
             (4, vec![]),
-            "a notice is no state"
+            "a notice is not a state"
         );
     }
 }

@@ -186,7 +186,7 @@ impl CommandEcho {
 
     /// Whether the boat echoes thrust that it should no longer apply.
     pub(super) fn is_deaf(&self, now: SimTime) -> bool {
-        // A boat that has echoed our set-points has used up its grace period.
+        // A boat that has already echoed our set-points gets no grace period.
         let patience_s = if self.has_shown_set_point {
             0.0
         } else {
@@ -235,13 +235,17 @@ mod tests {
         assert_eq!(
             found(&lagging[..20]),
             (false, true),
-            "it does not show what it was sent"
+            "it does not echo the command"
         );
-        assert_eq!(found(&lagging), (false, false), "it does in the end");
+        assert_eq!(
+            found(&lagging),
+            (false, false),
+            "it finally echoes the command"
+        );
         let mut later = vec![60.0; 20];
         later.push(30.0);
         for another in [&[90.0][..], &[60.0, -40.0, 60.0], &later] {
-            assert!(found(another).0, "{another:?} is another one's thrust");
+            assert!(found(another).0, "{another:?} is another gateway's thrust");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The current conditions of a bridge, from which the supervisor decides.
+//! The current conditions, on which the supervisor bases its decisions.
 
 use super::Bridge;
 use super::on_site::OnSite;

@@ -102,8 +102,8 @@ pub enum Input {
     /// The sim has admitted the boat; earlier orders are ignored.
     Joined,
     /// An order, and the time of the picture that it answers.
-    // The picture's time, not the message's, decides whether an order is fresh: a sim that repeats
-    // itself must not keep a boat moving.
+    // The picture's time, not the message's, decides whether an order is fresh: a sim that keeps
+    // sending the same order must not keep a boat moving.
     Order(Order, SimTime),
     /// An unreadable order.
     BadOrder,
@@ -125,7 +125,7 @@ pub enum Input {
     Tick,
 }
 
-/// The result of an input.
+/// The bridge's response to an input.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
     /// Bytes to write to the boat at once.

@@ -310,8 +310,8 @@ impl Bridge {
             return;
         };
         // No order can answer a picture that precedes the first one. An order is fresh if its
-        // picture is newer, not because it has just arrived: a sim that repeats itself must not
-        // keep a boat moving.
+        // picture is newer, not because it has just arrived: a sim that keeps sending the same
+        // order must not keep a boat moving.
         let newer = given > self.order.map_or(SimTime::ZERO, |current| current.given);
         if newer {
             self.counters.orders += 1;
@@ -485,8 +485,8 @@ impl Bridge {
         } else {
             command
         };
-        // Set thrust to zero before any command that is not our own set-point. It is not published
-        // how a Surveyor treats its last thrust when it leaves mode T.
+        // Set thrust to zero before any command that is not our own set-point. The manufacturer
+        // does not say how a Surveyor treats its last thrust when it leaves mode T.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
             self.protocol.write(now, Command::Zero, &mut out.bytes);
@@ -513,7 +513,7 @@ impl Bridge {
         let (nav, _) = site.estimator.nav(now)?;
         let order = self.order?.order;
         let set_point = site.set_points.map(now, order, &nav);
-        // In a dry run the boat receives no set-points, so it need not move.
+        // In a dry run the boat receives no set-points, so it is not expected to follow them.
         if !self.plan.dry_run {
             let ordered = site.set_points.ordered(order, set_point);
             site.estimator.note_order(now, ordered);

@@ -1,4 +1,4 @@
-//! The part of a bridge that needs the field: navigation, geofence, the box around the bow,
+//! The part of a bridge that needs the field: navigation, geofence, the box around the bow, and
 //! set-points.
 
 use super::Site;
@@ -48,7 +48,7 @@ impl OnSite {
     }
 
     /// The first part of a mission that is outside the geofence, if any: a waypoint, a leg, or the
-    /// way to the first waypoint.
+    /// path to the first waypoint.
     pub(super) fn outside(&self, now: SimTime, mission: &Mission) -> Option<String> {
         // The upload rejects invalid positions with a better reason.
         let on_globe =
@@ -62,8 +62,8 @@ impl OnSite {
             return Some("one of its waypoints is outside the geofence".to_owned());
         }
         let boat = self.estimator.nav(now).map(|(nav, _)| nav.at());
-        // The way to the first waypoint is a leg, too: the boat drives straight there, whatever
-        // lies between.
+        // The path to the first waypoint is also a leg: the boat drives straight there, whatever
+        // lies in between.
         let way: Vec<Ned> = boat
             .into_iter()
             .chain(mission.waypoints.iter().filter(on_globe).map(place))
@@ -84,11 +84,11 @@ impl OnSite {
         ))
     }
 
-    /// Whether the geofence allows the straight way from the boat to its recovery point.
+    /// Whether the geofence allows the straight path from the boat to its recovery point.
     pub(super) fn is_way_to(&self, now: SimTime, [lat_deg, lon_deg]: [f64; 2]) -> bool {
         let erp = self.estimator.place(lat_deg, lon_deg);
         let from = self.estimator.nav(now).map_or(erp, |(nav, _)| nav.at());
-        // From outside, the way back in is allowed: that is when a recovery point is needed most.
+        // A boat outside may drive back in: that is when it needs a recovery point most.
         self.geofence.area.leads_in(from, erp)
     }
 

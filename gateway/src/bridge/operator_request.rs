@@ -4,7 +4,8 @@ use super::Bridge;
 use crate::supervisor::{OperatorRequest, Scope, Task};
 use messages::external::{BoatMode, OperatorCommand};
 
-/// The supervisor request for a command; `None` if there is none, or if it depends on the boat.
+/// The supervisor request for a command; `None` if the command has none, or if its request depends
+/// on the boat.
 pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {
     match command {
         OperatorCommand::Arm => Some(OperatorRequest::Arm),

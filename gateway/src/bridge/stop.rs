@@ -30,9 +30,9 @@ impl Bridge {
     /// Standby, with the next start-up word if the boat accepts our commands.
     pub(super) fn standby(&mut self) -> Command {
         let listens = self.conditions.control.is_none() && !self.under_way && !self.plan.dry_run;
-        // Words such as THR_ON switch outputs of the boat and are sent once, with standby
-        // sentences, one at a time. They are sent only while the boat reports us in control, so
-        // that none is lost.
+        // Words such as THR_ON switch outputs of the boat. They are sent once, one at a time, with
+        // standby sentences, and only while the boat reports that we are in control, so that none
+        // is lost.
         let word = if listens {
             self.words.pop_front()
         } else {

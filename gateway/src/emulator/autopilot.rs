@@ -183,8 +183,8 @@ impl Autopilot {
     }
 }
 
-/// The order to go to a position that is not yet reached: slow while the boat points elsewhere, and
-/// near the position, to avoid circling.
+/// The order to go to a position; `None` if the boat has reached it. The speed is low near the
+/// position, and while the boat points elsewhere.
 fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
     let distance_m = pose.at.distance(place);
     if distance_m <= NEAR_M {

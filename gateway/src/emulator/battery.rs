@@ -5,7 +5,7 @@ use crate::lithium;
 use messages::Order;
 use primitives::SimTime;
 
-/// Maximum time step, s; a longer one means that the sim was away.
+/// Maximum time step, s; a longer one means that the sim was not running.
 const STEP_MAX_S: f64 = 10.0;
 
 /// The properties of a battery and its loads.
@@ -25,8 +25,8 @@ pub(super) struct Pack {
 
 impl Pack {
     /// The Surveyor's battery: 24 V, 1500 Wh and thrusters of 1000 W, from its specification. Boats
-    /// reported 24.8 V with 15433 of 57741 left, which matches seven lithium cells at that charge
-    /// if the count is in mAh.
+    /// reported 24.8 V with 15433 of 57741 left. If these counts are in mAh, this matches seven
+    /// lithium cells at that charge.
     pub(super) const SURVEYOR: Pack = Pack {
         cells: 7.0,
         capacity_ah: 57.741,
@@ -88,8 +88,7 @@ impl Battery {
         if self.drains {
             self.left = (self.left - drawn_ah / self.pack.capacity_ah).max(0.0);
         }
-        // An empty battery drives no thruster, but reports continue: a boat's electronics outlast
-        // its thrusters.
+        // Reports continue: a boat's electronics outlast its thrusters.
         let order = if self.left > 0.0 { order } else { Order::Hold };
         let rest_v = self.rest_v();
         // Use the voltage at rest, not under load: a loop through the resistance would need
@@ -129,8 +128,8 @@ fn powers(order: Order) -> [f64; 2] {
     let full_m_s = speed_of_thrust(100.0);
     let of_speed = |speed_m_s: f64| {
         let share = (speed_m_s / full_m_s).clamp(0.0, 1.0);
-        // Power is proportional to the cube of the speed at this thrust, so at 40 % thrust the
-        // battery lasts far more than 2.5 times as long.
+        // Power is proportional to the cube of the speed, so at 40 % thrust the battery lasts far
+        // more than 2.5 times as long as at full thrust.
         share * share * share
     };
     match order {
@@ -186,10 +185,7 @@ mod tests {
         }
         let wh = joules / 3600.0;
         let hours = s / 3600.0;
-        assert!(
-            (1400.0..1600.0).contains(&wh),
-            "{wh} Wh, specified are 1500"
-        );
+        assert!((1400.0..1600.0).contains(&wh), "{wh} Wh, expected 1500");
         // 1.5 m/s is half the maximum speed: an eighth of 2000 W, plus 33 W for the electronics.
         assert!((hours - 1500.0 / 283.0).abs() < 0.5, "{hours} h");
         assert!(

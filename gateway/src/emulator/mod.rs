@@ -50,7 +50,7 @@ pub struct Plan {
     pub charge: Option<f64>,
 }
 
-/// The source of bytes.
+/// The port on which bytes arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port {
     /// The primary operator: shore.

@@ -105,7 +105,7 @@ impl FixReport {
                 .map(|rad| degrees(rad - boat.plan.declination_rad)),
             speed_kn: Some(self.speed_m_s / M_S_PER_KN),
             speed_km_h: Some(3.6 * self.speed_m_s),
-            // Newer boats omit it.
+            // Newer boats omit the mode.
             with_mode: false,
         }
     }

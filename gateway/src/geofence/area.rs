@@ -101,7 +101,7 @@ impl GeofenceArea {
     }
 
     /// Whether the straight line ends inside, and never leaves the permitted water once it has
-    /// entered: a boat that is outside, or in a keep-out, returns along it.
+    /// entered it. A boat outside, or in a keep-out, can return along such a line.
     pub(crate) fn leads_in(&self, from: Ned, to: Ned) -> bool {
         // From outside, exactly one crossing leads in; a second one would lead out again.
         let crosses_once =
@@ -135,8 +135,8 @@ fn met(polygon: &[Ned], from: Ned, to: Ned) -> usize {
         .count()
 }
 
-/// The points in a rectangle or within this distance of it, clockwise on the chart: a rectangle
-/// with rounded corners.
+/// The outline of all points within this distance of a rectangle, clockwise on the chart: a
+/// rectangle with rounded corners.
 fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
     if margin_m <= 0.0 {
         return corners.to_vec();

@@ -93,8 +93,8 @@ impl GeofenceWatch {
             path.iter().all(|leg| {
                 let end = at + leg.end;
                 let start = std::mem::replace(&mut from, end);
-                // Slack adds up in a turn until it exceeds the distance that the boat can travel,
-                // so far from the edge that distance is enough.
+                // In a turn, slack adds up until it exceeds the distance that the boat can travel.
+                // Far from the edge, checking that distance is enough.
                 room_m > leg.reach_m
                     || self.area.contains_way(start, end)
                         && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
@@ -114,7 +114,7 @@ impl GeofenceWatch {
         is_well == [true; 2]
     }
 
-    /// The straight paths to rest that must be clear, as in still water, from the boat's position.
+    /// The straight paths to rest, as in still water, from the boat's position; all must be clear.
     fn straight_paths(&self, velocity_m_s: Ned) -> Vec<Vec<Leg>> {
         let Geofence {
             deceleration_m_s2,

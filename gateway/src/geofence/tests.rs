@@ -212,7 +212,7 @@ proptest! {
     fn a_way_is_inside_if_every_place_of_it_is(area in area(), from in place(), to in place()) {
         let all_inside = along(from, to).all(|at| may_be_at(&area, at));
         if area.contains_way(from, to) {
-            prop_assert!(all_inside, "{from:?} to {to:?} is no way inside");
+            prop_assert!(all_inside, "{from:?} to {to:?} is not all inside");
         } else if all_inside {
             // The line cuts a corner between two steps near the corner.
             let nearest_m = along(from, to).map(|at| area.clearance_m(at)).fold(f64::INFINITY, f64::min);

@@ -24,7 +24,7 @@ const TO_LISTEN: &str = "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?
 pub enum LinkAddress {
     /// A TCP port.
     Tcp(Side, HostPort),
-    /// A UDP port. Our own port replies to every sender.
+    /// A UDP port. A listening port replies to every sender.
     Udp(Side, HostPort),
     /// A local UDP port that serves only its first sender: boats send to their ground station's
     /// port.

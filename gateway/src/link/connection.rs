@@ -47,7 +47,7 @@ impl Connection {
         match threads.spawn("link writer", move || write_on(&peer, &shared)) {
             Ok(writer) => connection.writer = Some(writer),
             Err(e) => {
-                connection.close(&End::Lost(format!("cannot start a thread for it: {e}")));
+                connection.close(&End::Lost(format!("cannot start a thread: {e}")));
                 return Err(e);
             }
         }
@@ -76,7 +76,8 @@ impl Connection {
             if let Some(end) = self.peer.is_to_end() {
                 return end;
             }
-            // A peer that came up while the others were being ended may still be up.
+            // `Threads::stop` ends only the peers that it finds, so a peer that has just come up
+            // checks here.
             if self.threads.is_stopped() {
                 return End::Stopped;
             }

@@ -96,7 +96,7 @@ pub enum LinkError {
         reason: String,
     },
     /// Cannot create the symlink to the pseudo-terminal.
-    #[error("cannot make the symlink {path}: {reason}")]
+    #[error("cannot create the symlink {path}: {reason}")]
     Symlink {
         /// The path of the symlink.
         path: PathBuf,
@@ -131,7 +131,7 @@ pub trait BoatLink {
     /// Sends a shutdown message: displaces queued bytes, writes these bytes to all peers, and waits
     /// up to `limit`. Returns whether there was a peer and the system accepted the bytes for all of
     /// them. Bytes whose write has not begun by then stay queued. Other threads' bytes do not
-    /// displace them. Works while panicking.
+    /// displace them. May be called during a panic.
     fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool;
 }
 

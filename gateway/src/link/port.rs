@@ -177,7 +177,7 @@ impl Port {
     /// pseudo-terminals hold nothing back.
     pub(super) fn discard_unsent(&self) {
         if let Port::Serial { line, .. } = self {
-            // If it cannot be discarded, it is sent as before.
+            // On failure, the driver sends these bytes as usual.
             drop(line.discard_output_buffer());
         }
     }

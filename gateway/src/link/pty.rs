@@ -21,8 +21,8 @@ use std::time::{Duration, Instant};
 /// boat's current position, not an old one.
 const UNREAD_MAX: Duration = Duration::from_millis(500);
 
-/// Both ends of a pseudo-terminal. We keep the slave open, too: with no process on it, the master
-/// could not be written to, and the next process would find echo and line editing enabled.
+/// Both ends of a pseudo-terminal. We keep the slave open, too: on Linux, a master without an open
+/// slave returns errors, and the next process to open it would find echo and line editing enabled.
 pub(super) struct Pty {
     master: SerialPort,
     slave: OwnedFd,
@@ -44,8 +44,6 @@ struct ReaderState {
 impl Pty {
     /// Opens a raw pseudo-terminal, with a symlink to it if requested.
     pub(super) fn open(link: Option<&Path>) -> Result<Pty, LinkError> {
-        // The slave stays open in this process, too: on Linux, a master whose last slave closes
-        // returns errors until a process opens it again.
         let (master, slave, path) = pair().map_err(|e| LinkError::Pty {
             reason: e.to_string(),
         })?;
@@ -78,7 +76,7 @@ impl Pty {
         self.master.write(bytes)
     }
 
-    /// How often unread bytes have been discarded.
+    /// Number of times that unread bytes have been discarded.
     pub(super) fn flushes(&self) -> u64 {
         self.flushes.load(Ordering::Relaxed)
     }
@@ -95,8 +93,7 @@ impl Pty {
     }
 
     /// Called regularly: discards bytes that have been unread for too long, unless some were
-    /// written recently. The system does not report that a process has opened the slave, but a
-    /// reader empties it.
+    /// written recently.
     pub(super) fn flush_if_stale(&self) -> io::Result<()> {
         let mut reader = self.reader.lock();
         let is_old = reader
@@ -112,7 +109,8 @@ impl Pty {
 
     /// For how long there have been unread bytes without a break.
     fn unread_for(&self, reader: &mut ReaderState) -> io::Result<Duration> {
-        // No event reports a read, but the fill level of the slave's queue reveals it.
+        // The system reports neither that a process has opened the slave nor that it has read, but
+        // the fill level of the slave's queue shows it.
         let is_unread = rustix::io::ioctl_fionread(&self.slave)? > 0;
         let since = reader.unread_since.filter(|_| is_unread);
         reader.unread_since = since.or_else(|| is_unread.then(clock::now));

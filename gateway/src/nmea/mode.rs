@@ -28,7 +28,7 @@ pub enum Mode {
     GoToErp,
     /// `D`: depth.
     Depth,
-    /// `S`: direction of gravity.
+    /// `S`: gravity vector.
     GravityVector,
     /// `F`: receive a file (a mission) line by line.
     FileDownload,

@@ -38,8 +38,7 @@ impl Axis {
         Some([1.0, -1.0][place])
     }
 
-    /// Degrees from `ddmm.mmmm`. All digits before the point are required, because without leading
-    /// zeros the position is ambiguous.
+    /// Degrees from `ddmm.mmmm`. All digits before the point are required.
     pub(super) fn degrees(&self, text: &str) -> Option<f64> {
         let whole = text.split('.').next().unwrap_or_default();
         // Without a leading zero, degrees shift into minutes: the longitude 8022.3 could mean 802
@@ -62,9 +61,8 @@ impl Axis {
             return None;
         }
         let steps_per_minute = 10_u32.pow(decimals);
-        // At most 180 * 60 * 100 000 steps.
-        // In whole steps, so that 59.999996 minutes become the next degree and never
-        // "60.00000".
+        // At most 180 * 60 * 100 000 steps. In whole steps, 59.999996 minutes become the next
+        // degree and never "60.00000".
         let steps = (angle_deg.abs() * f64::from(60 * steps_per_minute)).round() as u32;
         let minutes = steps / steps_per_minute;
         let part = steps % steps_per_minute;

@@ -197,7 +197,6 @@ impl<'a> Reader<'a> {
     /// invalid.
     fn valid(&mut self) -> Result<bool, ParseError> {
         match self.next() {
-            // Some receivers send D (differential) here.
             "A" | "D" => Ok(true),
             "V" | "" => Ok(false),
             _ => Err(self.wrong("A, D, V or an empty field")),

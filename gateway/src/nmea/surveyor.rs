@@ -13,9 +13,9 @@ pub struct Command {
     pub mode: Mode,
     /// Compass heading, degrees; in [`Mode::FileDownload`] the number of following lines.
     pub heading_deg: Option<f64>,
-    /// Thrust in percent of full thrust, positive ahead; in [`Mode::Speed`] the speed in knots.
+    /// Thrust in per cent of full thrust, positive ahead; in [`Mode::Speed`] the speed in knots.
     pub thrust: Option<f64>,
-    /// Half of port thrust minus starboard thrust, percent: positive turns to starboard.
+    /// Half of port thrust minus starboard thrust, per cent: positive turns to starboard.
     pub difference: Option<f64>,
     /// A switch such as `THR_ON`, else empty.
     pub words: String,
@@ -42,7 +42,7 @@ impl Command {
                 zeros(&self.thrust),
                 zeros(&self.difference),
             ),
-            // Mode T uses whole numbers: a stand-in for the boat reads integers, and keeps the
+            // Mode T uses whole numbers: one stand-in for the boat reads integers, and keeps the
             // previous difference if the new one has decimal places.
             Mode::Thruster => (
                 Format {
@@ -240,9 +240,9 @@ pub struct ControlState {
     pub mode: Mode,
     /// The commanded heading, degrees magnetic.
     pub heading_deg: Option<f64>,
-    /// The commanded thrust, percent; in [`Mode::Speed`] the speed in knots.
+    /// The commanded thrust, per cent; in [`Mode::Speed`] the speed in knots.
     pub thrust: Option<f64>,
-    /// The commanded thrust difference, percent.
+    /// The commanded thrust difference, per cent.
     pub difference: Option<f64>,
     /// The last switch received, else empty.
     pub words: String,
@@ -311,7 +311,7 @@ impl BoatError {
 /// constant in every known sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MissionSettings {
-    /// Throttle, percent.
+    /// Throttle, per cent.
     pub throttle_pct: f64,
 }
 
@@ -323,7 +323,7 @@ impl MissionSettings {
             Field::Address("PSEAR"),
             Field::Constant("0"),
             Field::Constant("000"),
-            Field::Required(&mut self.throttle_pct, WHOLE, "a throttle in percent"),
+            Field::Required(&mut self.throttle_pct, WHOLE, "a throttle in per cent"),
             Field::Constant("0"),
             Field::Constant("000"),
         ];

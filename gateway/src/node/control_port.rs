@@ -71,7 +71,7 @@ impl ControlPort {
             is_running,
         });
         let open = || ControlPort::open_once(listen, Arc::clone(&server));
-        // Port 0 is chosen for TCP; the same number may be in use for UDP.
+        // If the port is 0, the system chooses it for TCP; the same number may be in use for UDP.
         let attempts = if listen.port() == 0 { ATTEMPTS } else { 1 };
         (1..attempts).fold(open(), |opened, _| opened.or_else(|_| open()))
     }
@@ -203,7 +203,7 @@ impl Server {
             None if request.command.is_status() => 0,
             None => return None,
         };
-        // Obey anyway: the loop reads the flag when it starts.
+        // The stop remains set: the loop reads it when it starts.
         if !self.is_running.load(Ordering::SeqCst) {
             return None;
         }
@@ -370,7 +370,7 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains(&token.hex()));
-        // A request shorter than its reply gets none.
+        // A request shorter than its reply gets no reply.
         socket
             .send(br#"{"body":{"fleet":"e_stop"}}"#)
             .expect("it is sent");

@@ -331,7 +331,7 @@ impl GatewayLoop<'_> {
             }
             // The ticket belongs to a different boat, which our reports would move.
             Call::Joined(_) => {
-                let reason = "the sim admitted a different boat from the one that asked".to_owned();
+                let reason = "the sim admitted a different boat from the one requested".to_owned();
                 return Err(NodeError::Refused(reason));
             }
             Call::SimGone => {
@@ -558,7 +558,7 @@ impl Drop for GatewayLoop<'_> {
     /// However a gateway ends, except by a kill or a power cut, it sends the boat the shutdown
     /// message three times before the link closes.
     fn drop(&mut self) {
-        // Three times, for lossy links; sent on every exit from the loop, including a panic.
+        // Three times, because links lose messages.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
         // End the guard only after the message: until then, it must stop the boat if this process

@@ -2,9 +2,10 @@
 //! suspended.
 //!
 //! It holds a duplicate of the link's file descriptor, which outlives a killed process, and one end
-//! of a socket pair, through which the gateway sends the stop message of its protocol, a heartbeat
-//! from its loop, every new link, and notice of an orderly exit. Without a heartbeat for
-//! [`SILENCE`], or when the other end closes, it writes the stop message: zero thrust and standby.
+//! of a socket pair. Through the pair, the gateway sends the stop message of its protocol, a
+//! heartbeat from its loop, every new link, and notice of an orderly exit. Without a heartbeat for
+//! [`SILENCE`], or when the other end closes, the guard writes the stop message: zero thrust and
+//! standby.
 
 use bus::clock;
 use parking_lot::Mutex;
@@ -28,7 +29,7 @@ pub(super) const HEARTBEAT: Duration = Duration::from_millis(100);
 /// Time without a heartbeat after which the gateway is treated as hung.
 const SILENCE: Duration = Duration::from_millis(400);
 /// Time without a heartbeat after which the loop itself assumes that the guard has stopped the
-/// boat: shorter, so that the two never disagree.
+/// boat: shorter, so that the loop never misses such a stop.
 pub(super) const HUNG: Duration = Duration::from_millis(350);
 /// Interval at which the guard repeats standby while the gateway hangs and after it has died.
 const AGAIN: Duration = Duration::from_millis(100);
@@ -112,8 +113,8 @@ impl Guarded {
         self.send(&[ENDS], None);
     }
 
-    /// Whether the message was delivered, or the guard still exists: a suspended guard eventually
-    /// accepts no more data.
+    /// Returns whether the guard still exists. A message to a suspended guard may be lost, once its
+    /// queue is full.
     fn send(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];

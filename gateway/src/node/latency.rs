@@ -12,7 +12,7 @@ pub(super) struct Latency(Histogram<u64>);
 impl Latency {
     pub(super) fn new() -> Latency {
         // With three significant digits, memory stays bounded however long the gateway runs.
-        Latency(Histogram::new_with_bounds(1, LONGEST_US, 3).expect("sound bounds"))
+        Latency(Histogram::new_with_bounds(1, LONGEST_US, 3).expect("valid bounds"))
     }
 
     pub(super) fn note(&mut self, from: Instant, to: Instant) {

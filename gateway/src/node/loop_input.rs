@@ -177,8 +177,8 @@ impl LoopInput {
         self.wake();
     }
 
-    /// If the inbox is full, the call may be dropped: the loop then has calls to read anyway, and
-    /// checks everything else before each of them.
+    /// Wakes the loop. If the inbox is full, the call may be dropped: the loop then has calls to
+    /// read anyway, and checks everything else before each of them.
     fn wake(&self) {
         self.calls.put(Call::Look);
     }

@@ -190,8 +190,7 @@ fn connect(
     let recorder = file.and_then(|file| recorder(file, settings, notify));
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
-    // From here on, time is the core's: a recording begins at zero, and its replay has the same
-    // times.
+    // The core's time starts here, at zero, so that a recording and its replay have the same times.
     let clock = Clock::start();
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),

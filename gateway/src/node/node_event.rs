@@ -20,7 +20,7 @@ pub enum NodeEvent<'a> {
         /// The event.
         event: &'a Event,
     },
-    /// The status, twice a second.
+    /// The status, once a second.
     Status(&'a GatewayStatus),
     /// The node has ended with this status.
     Ended(&'a GatewayStatus),

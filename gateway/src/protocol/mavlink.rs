@@ -48,8 +48,7 @@ const STREAMS: [(u32, f64); 10] = [
     // The set-points that the boat follows, for comparison with ours.
     (NAV_CONTROLLER_OUTPUT_DATA::ID, 5.0),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, 5.0),
-    // Not used by the gateway: in its recording, they are the thrust from which a boat is
-    // identified.
+    // The gateway does not use these, but records them: boats are identified from their thrust.
     (SERVO_OUTPUT_RAW_DATA::ID, 10.0),
 ];
 /// Interval at which the messages are requested again, s: the boat may have restarted.
@@ -518,7 +517,7 @@ fn mode_of(task: Task) -> (RoverMode, Mode, &'static str) {
 /// The mission item that a boat requests, and the addressee of the request.
 #[expect(
     deprecated,
-    reason = "ArduPilot asks by MISSION_REQUEST too, and is answered as the specification says"
+    reason = "ArduPilot also sends MISSION_REQUEST, which gets the same reply"
 )]
 fn item_request(message: &MavMessage) -> Option<(u16, (u8, u8))> {
     match message {

@@ -114,8 +114,8 @@ impl Boat {
         }
     }
 
-    /// Whether a message is from this boat. Without a system number, the first boat's autopilot is
-    /// chosen.
+    /// Whether a message is from this boat. If no system number is set, the first boat heard
+    /// becomes this boat.
     pub(super) fn is_its(&mut self, received: &Received) -> bool {
         if let (None, MavMessage::HEARTBEAT(heartbeat)) = (self.system, &received.message)
             && received.component == AUTOPILOT

@@ -16,8 +16,8 @@ use primitives::SimTime;
 /// Time after which an unanswered message is sent again (s), and the maximum number of attempts.
 const AGAIN_S: f64 = 1.0;
 const TRIES_MAX: u32 = 5;
-/// Maximum distance of a home from the recovery point at which it counts as the one that was set,
-/// 1e-7 degrees: one metre.
+/// Maximum difference between the boat's home and the recovery point that counts as equal, 1e-7
+/// degrees: one metre.
 const SAME_E7: u32 = 90;
 
 /// The upload.
@@ -31,7 +31,7 @@ pub(super) struct Upload {
     due: SimTime,
 }
 
-/// The boat's next step.
+/// The step that the boat must take next.
 #[derive(Clone, Debug, PartialEq)]
 enum Phase {
     /// The boat must report the home that it was sent.

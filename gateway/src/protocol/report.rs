@@ -25,7 +25,7 @@ pub enum Report {
     Station(String),
     /// The boat's battery and electrical loads.
     Power(Power),
-    /// The boat's present error; `None` means no error.
+    /// The boat's current error; `None` means no error.
     Error(Option<String>),
     /// A single message for operators.
     Notice(String),

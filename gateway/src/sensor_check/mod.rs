@@ -464,7 +464,7 @@ impl SensorCheck {
     fn apply(&mut self, now: SimTime, report: Report) {
         self.note_usable(now, &report);
         match report {
-            // RMC only reports whether there is one.
+            // RMC reports no quality, only whether there is a fix.
             Report::Fix(fix) if fix.quality.is_some() => {
                 if let Some(at) = fix.at
                     && fix.quality.is_some_and(FixQuality::is_fix)

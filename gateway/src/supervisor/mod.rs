@@ -322,8 +322,6 @@ impl Supervisor {
         };
         match action {
             FailsafeAction::Standby => None,
-            // Only for four causes: if every cause had an action, a user could let a boat keep
-            // station without a fix.
             FailsafeAction::StationKeep => Some(Task::StationKeep),
             FailsafeAction::GoToErp => Some(Task::GoToErp),
         }

@@ -2,11 +2,11 @@
 
 #![allow(
     clippy::unwrap_used,
-    reason = "helpers of tests may also panic on the impossible"
+    reason = "test helpers may panic on impossible cases"
 )]
 #![allow(
     clippy::disallowed_methods,
-    reason = "a link's promises are given in milliseconds of real time"
+    reason = "a link guarantees times in milliseconds of real time"
 )]
 
 mod address;

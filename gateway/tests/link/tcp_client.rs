@@ -66,7 +66,7 @@ fn sixty_four_kib_in_one_write_arrive_whole() {
     link.send(bulk.clone(), 7);
     assert!(
         read(&mut boat, bulk.len()) == bulk,
-        "what arrived is not what was sent"
+        "the received bytes differ from the sent ones"
     );
     log.written(7);
     boat.write_all(&bulk).unwrap();

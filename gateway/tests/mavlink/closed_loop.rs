@@ -1,4 +1,4 @@
-//! An ArduPilot boat and its gateway: who drives the boat when, and which events stop it.
+//! Tests an ArduPilot boat with its gateway: who drives the boat, and which events stop it.
 
 use crate::rig::{Rig, datum, frame, plan};
 use gateway::bridge::{Event, Input};
@@ -190,7 +190,7 @@ fn a_boat_that_goes_astern_against_its_orders_is_stopped() {
 #[test]
 #[expect(
     deprecated,
-    reason = "ground stations send frames of the boat, and Rover accepts them"
+    reason = "ground stations use frames that move with the boat, and Rover accepts them"
 )]
 fn an_emulated_boat_takes_the_sign_of_its_speed_from_the_north_as_rover_does() {
     use PositionTargetTypemask as Mask;

@@ -1,5 +1,4 @@
-//! An emulated ArduPilot boat and ground stations other than ours: every request is answered as
-//! Rover would answer it.
+//! Tests that an emulated ArduPilot boat answers every request of a ground station as Rover would.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 

@@ -1,5 +1,5 @@
-//! An emulated ArduPilot boat in GUIDED: it follows what ground stations send as Rover does, or
-//! reports that it does not.
+//! Tests an emulated ArduPilot boat in GUIDED: like Rover, it either follows the set-points of
+//! ground stations or reports that it ignores them.
 
 #![expect(
     deprecated,
@@ -313,7 +313,7 @@ fn commands_of_ground_stations_send_the_boat_to_a_place_at_a_speed() {
     assert_eq!(
         station.command(true, MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16, [1.0, 0.5]),
         Some(4),
-        "on no way"
+        "without a destination"
     );
     assert_eq!(
         station.command_at(false, reposition, [-1.0, 0.0, 0.0, 0.0], (0, 0)),

@@ -2,7 +2,7 @@
 //! gateway, in memory.
 
 #[path = "../closed_loop/boat.rs"]
-#[allow(dead_code, reason = "what only a Surveyor needs")]
+#[allow(dead_code, reason = "only the tests of a Surveyor use all of it")]
 mod boat;
 mod closed_loop;
 mod foreign_order;

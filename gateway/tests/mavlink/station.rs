@@ -172,7 +172,7 @@ impl Station {
     }
 
     /// The item that a boat requests.
-    #[expect(deprecated, reason = "ArduPilot asks with MISSION_REQUEST")]
+    #[expect(deprecated, reason = "ArduPilot requests items by MISSION_REQUEST")]
     pub(crate) fn requested(message: &MavMessage) -> Option<u16> {
         match message {
             MavMessage::MISSION_REQUEST(request) => Some(request.seq),

@@ -228,8 +228,8 @@ impl ArduPilot {
         }
     }
 
-    /// Drives to a position, at the given speed if any. Like Rover, it accepts a speed only on the
-    /// way to another position.
+    /// Drives to a position, at the given speed if any. Like Rover, it accepts a speed only if the
+    /// boat is already driving to a position.
     fn command_reposition(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
         let may_change_mode = command.param2 as i32 & CHANGE_MODE != 0;
         let at_e7 = (command.x, command.y);

@@ -19,8 +19,7 @@ pub(super) struct StationWatch {
 
 impl ArduPilot {
     /// The station is lost after FS_GCS_TIMEOUT without a message; FS_TIMEOUT later the boat
-    /// executes FS_ACTION. It stays armed, whatever the mode, except for the action that
-    /// terminates.
+    /// executes FS_ACTION. Only action 5 (terminate) disarms the boat.
     pub(super) fn check_failsafe(&mut self, now: SimTime) {
         let is_enabled = self.parameters.value("FS_GCS_ENABLE") != 0.0;
         let Some(heard_at) = self.station.heard_at.filter(|_| is_enabled) else {

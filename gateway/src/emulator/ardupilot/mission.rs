@@ -1,9 +1,9 @@
-//! The mission of an emulated ArduPilot boat: requests the items one by one, and sends them on
-//! request.
+//! The mission of an emulated ArduPilot boat. The boat requests the items of an upload one by one,
+//! and sends its items on request.
 
 #![expect(
     deprecated,
-    reason = "ground stations send the older messages, and are answered as ArduPilot does"
+    reason = "ground stations send the older messages, and ArduPilot answers them"
 )]
 
 use super::set_point::is_global;
@@ -124,7 +124,7 @@ impl MissionStore {
         ((now - upload.asked_at).as_s() > AGAIN_S).then(|| upload.request(now))
     }
 
-    /// Ends an upload because the requested item is missing; returns the reply to its sender.
+    /// Abandons this sender's upload; returns the reply, with the reason.
     pub(super) fn refuse(&mut self, from: (u8, u8), reason: MavMissionResult) -> MavMessage {
         self.end_upload(from);
         ack(from, reason)
@@ -135,8 +135,8 @@ impl MissionStore {
     }
 
     /// Handles a message of the mission protocol from a system and component; returns the reply, if
-    /// one is due. The outer `None` means that the message is not part of it. Item 0 is the home,
-    /// 1e-7 degrees.
+    /// one is due. The outer `None` means that the message is not part of this protocol. `home` is
+    /// item 0: latitude and longitude, 1e-7 degrees.
     pub(super) fn answer(
         &mut self,
         now: SimTime,
@@ -271,7 +271,7 @@ impl MissionStore {
     }
 }
 
-/// Why the boat would not execute an item, and so rejects it.
+/// Why the boat rejects an item, if it cannot execute it.
 fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     match item.command {
         _ if item.param1.is_nan() => Some(MavMissionResult::MAV_MISSION_INVALID_PARAM1),
@@ -291,7 +291,8 @@ fn fault_of(item: &MISSION_ITEM_INT_DATA) -> Option<MavMissionResult> {
     }
 }
 
-/// The subject of a message: missions, fences or rally points. Acknowledgements need no reply.
+/// The type of mission that a message is about: missions, fences or rally points. `None` for
+/// acknowledgements, which need no reply, and for messages of other protocols.
 fn type_of(message: &MavMessage) -> Option<MavMissionType> {
     Some(match message {
         MavMessage::MISSION_CLEAR_ALL(clear) => clear.mission_type,

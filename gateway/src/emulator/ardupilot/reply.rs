@@ -1,4 +1,4 @@
-//! The replies of an emulated ArduPilot boat to unsupported requests: each gets a reply.
+//! The replies of an emulated ArduPilot boat to TIMESYNC and to messages that it does not support.
 
 use super::ArduPilot;
 use super::mission::ack;
@@ -11,7 +11,7 @@ use primitives::SimTime;
 
 /// Minimum time between reports that a message is not supported, s.
 const COMPLAINT_S: f64 = 1.0;
-/// The offset of the target system, by number of the message, for messages with enumerations.
+/// Message number, and offset of the target system, for messages that contain enumerations.
 const TARGET_AT: [(u32, usize); 16] = [
     (23, 4),
     (39, 32),
@@ -43,7 +43,7 @@ impl ArduPilot {
                     ..sync.clone()
                 }));
             }
-            // A reply to somebody else.
+            // A reply to another system.
             MavMessage::TIMESYNC(_) => {}
             other if other.target_system_id().is_some_and(|target| target != 0) => {
                 let text = format!("{} is not supported", other.message_name());
@@ -83,7 +83,7 @@ impl ArduPilot {
         }
     }
 
-    /// Reports that a message is not supported: at once, but not as often as set-points arrive.
+    /// Warns that a message is not supported, at most once per [`COMPLAINT_S`] and message number.
     pub(super) fn complain(&mut self, now: SimTime, id: u32, text: &str) {
         let said = self.complaints.get(&id);
         if said.is_none_or(|said| (now - *said).as_s() >= COMPLAINT_S) {

@@ -73,7 +73,7 @@ pub(super) fn is_global(frame: MavFrame) -> bool {
 pub(super) struct SetPoints {
     /// In mode GUIDED: when it arrived, the steering target, and the speed, m/s.
     pub(super) guided: Option<(SimTime, Course, f64)>,
-    /// The position to go to instead.
+    /// The destination in mode GUIDED, if a position was commanded.
     destination: Option<Ned>,
     /// The commanded speed on the way to it, if any, m/s.
     speed_m_s: Option<f64>,
@@ -129,7 +129,7 @@ impl SetPoints {
     /// The reason if Rover ignores it.
     #[expect(
         deprecated,
-        reason = "ground stations send the boat's frames, and Rover accepts them"
+        reason = "ground stations use frames that move with the boat, and Rover accepts them"
     )]
     pub(super) fn take_local(
         &mut self,
@@ -315,7 +315,8 @@ impl SetPoints {
                 autopilot::astern(speed_m_s, rate_rad_s * TURN_LEAD_S)
             }
             Course::Heading(heading_rad) => autopilot::steer(Some(heading_rad), Some(speed_m_s)),
-            // Our gateway stops a boat with a set-point of zero: it must rest, not hold a heading.
+            // Our gateway stops a boat with a set-point of zero: the boat must rest, not hold a
+            // heading.
             Course::Turn(0.0) if speed_m_s == 0.0 => Order::Hold,
             Course::Turn(rate_rad_s) => {
                 let by_rad = (rate_rad_s * TURN_LEAD_S).clamp(-PI, PI);

@@ -25,7 +25,8 @@ use std::collections::BTreeMap;
 
 /// Mask of Rover's POSITION_TARGET_GLOBAL_INT: only the position is valid.
 const POSITION_ALONE: u16 = 0xFDF8;
-/// Minimum interval of a message, s: four fifths of Rover's 50 loops a second.
+/// Minimum interval of a message, s: Rover sends at no more than four fifths of its 50 Hz loop
+/// rate.
 const INTERVAL_MIN_S: f64 = 0.025;
 /// Version 4.6.3, in ArduPilot's encoding.
 const VERSION: u32 = 0x0406_03FF;
@@ -106,8 +107,9 @@ impl Streams {
         MavResult::MAV_RESULT_ACCEPTED
     }
 
-    /// Speeds up all messages but the heartbeat to the rate of any stream.
-    // Never slows them down: the gateway depends on the intervals that it has set.
+    /// Raises the rate of all messages except the heartbeat to the requested rate, whatever the
+    /// stream.
+    // Never lowers a rate: the gateway depends on the intervals that it has set.
     pub(super) fn take_request(&mut self, request: &REQUEST_DATA_STREAM_DATA) {
         if request.start_stop != 1 || request.req_message_rate == 0 {
             return;
@@ -151,7 +153,7 @@ impl ArduPilot {
                     ..Default::default()
                 })
             }
-            // It contains no velocities.
+            // Rover's message contains no velocities.
             POSITION_TARGET_GLOBAL_INT_DATA::ID if self.mode == RoverMode::Guided => {
                 let (lat_int, lon_int) = self.e7(self.position_target()?);
                 MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
@@ -186,7 +188,7 @@ impl ArduPilot {
         let (at, velocity) = (nav.at(), nav.velocity_m_s());
         let (lat, lon) = self.e7(at);
         let has_fix = self.sensed.has_fix(now);
-        // Below 36000, which is not a valid angle.
+        // Stay below 36000, which is not a valid angle.
         let centidegrees = |rad| ((100.0 * compass_deg_from_rad(rad)) as u16).min(35_999);
         let time_boot_ms = boot_ms(now);
         Some(match id {
@@ -245,8 +247,8 @@ impl ArduPilot {
         })
     }
 
-    /// The pulses for the thrusters, outputs 1 and 3. A set-point of speed and heading is carried
-    /// out by the simulation, so its thrust is unknown here.
+    /// The pulses for the thrusters, outputs 1 and 3. `None` for a set-point of speed and heading:
+    /// the simulation carries it out, so its thrust is unknown here.
     fn outputs(&self, now: SimTime) -> Option<SERVO_OUTPUT_RAW_DATA> {
         let [port, starboard] = match self.order {
             Order::Thrust { port, starboard } => [port, starboard],
@@ -301,7 +303,7 @@ impl ArduPilot {
             onboard_control_sensors_present: sensors,
             onboard_control_sensors_enabled: sensors,
             onboard_control_sensors_health: sensors,
-            // The crate's default for flags is the first one.
+            // By default, the crate sets the first flag of these fields.
             onboard_control_sensors_present_extended: MavSysStatusSensorExtended::empty(),
             onboard_control_sensors_enabled_extended: MavSysStatusSensorExtended::empty(),
             onboard_control_sensors_health_extended: MavSysStatusSensorExtended::empty(),

@@ -1,4 +1,4 @@
-//! SITL's datagrams, its clock and the replies to the datagrams.
+//! Tests SITL's datagrams, its clock and the replies.
 
 use super::*;
 use messages::picture::Nav;
@@ -150,8 +150,8 @@ fn a_turning_boat_is_on_its_circle_between_the_frames_too() {
     }
 }
 
-/// Captured from ArduRover 4.7 (motorboat-skid), built from its public sources: the first
-/// datagram, and one while it kept 1.5 m/s westwards in these waves.
+/// Captured from ArduRover 4.7 (motorboat-skid), built from its public sources: the first datagram,
+/// and one while the boat drove west at 1.5 m/s in waves.
 #[test]
 fn datagrams_of_the_real_firmware_are_read() {
     let first = "1a48b004000000000000000000000000000000000000000000000000000000000000000000000000";
