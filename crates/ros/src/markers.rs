@@ -27,7 +27,7 @@ fn color(team: TeamId) -> Color {
     TEAMS[team.index() % TEAMS.len()]
 }
 
-/// A marker with this number in a list of this name.
+/// A marker with this number in the namespace `ns`.
 fn marker(at: SimTime, ns: &str, id: usize, kind: i32, color: Color) -> Marker {
     let header = Header {
         stamp: at.into(),

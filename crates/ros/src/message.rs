@@ -163,7 +163,7 @@ pub struct DiagnosticArray {
     pub status: Vec<DiagnosticStatus>,
 }
 
-/// The answer of `std_srvs/srv/SetBool` and `std_srvs/srv/Trigger`.
+/// The response of `std_srvs/srv/SetBool` and `std_srvs/srv/Trigger`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Done {
     pub success: bool,

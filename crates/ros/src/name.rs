@@ -1,9 +1,9 @@
 //! The names that `rmw_zenoh` gives to topics, services, nodes and messages: keys, liveliness
 //! tokens and attachments, as in its design document.
 //!
-//! The crate `hiroz-protocol` implements these too. They amount to four formats and 33 bytes; the
-//! crate is experimental, twelve times as long, and would tie the bridge's zenoh version to its
-//! own.
+//! The crate `hiroz-protocol` implements these too, in twelve times as much code. It is
+//! experimental, and would tie the bridge to its own zenoh version, all for four formats and 33
+//! bytes.
 
 use crate::type_hash::type_hash;
 use xxhash_rust::xxh3::xxh3_128;
@@ -113,7 +113,7 @@ pub fn attachment(sequence: i64, sent_ns: i64, gid: [u8; 16]) -> Vec<u8> {
 }
 
 /// The attachment of the answer to a request with this attachment: its number and sender, with a
-/// new time. `None` if it is not an attachment.
+/// new time. `None` if `request` is not an attachment.
 pub fn answer_attachment(request: &[u8], sent_ns: i64) -> Option<Vec<u8>> {
     let gid = request
         .get(17..33)

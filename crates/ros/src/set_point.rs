@@ -8,8 +8,8 @@ use messages::{VehicleOrder, order};
 use primitives::{SimTime, VehicleId, angle::wrap_pi};
 use std::f64::consts::FRAC_PI_3;
 
-/// Maximum lead of the ordered heading over the boat's own, rad. Without it, a boat that cannot
-/// turn as fast as requested would continue turning after the end of the request.
+/// Maximum lead of the ordered heading over the boat's own, rad. Without this limit, a boat that
+/// cannot turn as fast as requested would continue turning after the end of the request.
 const LEAD_MAX_RAD: f64 = FRAC_PI_3;
 /// Maximum yaw rate that a twist may request, rad/s.
 const YAW_RATE_MAX_RAD_S: f64 = 10.0;
@@ -81,7 +81,7 @@ pub struct Numbered {
 /// Follows the requests for one boat.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    /// Validity of a request, in game time.
+    /// How long a request is valid, in game time.
     ttl: SimTime,
     /// The number of the newest request, and the first decision that used it.
     newest: Option<(u64, SimTime)>,
@@ -136,8 +136,8 @@ impl Follower {
         Order::Hold
     }
 
-    /// The ordered heading moves at the requested yaw rate, and the boat follows it, so that the
-    /// rate is the same for every hull and controller.
+    /// Advances the ordered heading at the requested yaw rate. The boat follows this heading, so
+    /// that the rate is the same for every hull and controller.
     fn heading(&mut self, now: SimTime, psi_rad: f64, yaw_rate_rad_s: f64) -> f64 {
         let (before_rad, then) = self.heading.unwrap_or((psi_rad, now));
         let ahead_rad = wrap_pi(before_rad - psi_rad) + yaw_rate_rad_s * (now - then).as_s();

@@ -90,7 +90,7 @@ impl Field {
     }
 }
 
-/// The full name of a type in a definition of `package`: `std_msgs/Header` is
+/// The full name of a type in a definition of `package`: `std_msgs/Header` becomes
 /// `std_msgs/msg/Header`.
 fn full_name(name: &str, package: &str) -> String {
     match name.split('/').collect::<Vec<_>>()[..] {

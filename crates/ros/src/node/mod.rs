@@ -36,7 +36,7 @@ use thiserror::Error;
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// Absence of the sim after which the game counts as over. A paused game sends no frames.
 const MISSING_MAX: Duration = Duration::from_secs(5);
-/// Time for which an agent without pictures waits for the sim.
+/// How long an agent without pictures waits for the sim.
 const SILENCE: Duration = Duration::from_secs(60);
 
 /// The settings of a bridge.
@@ -51,7 +51,7 @@ pub struct Settings {
     pub domain: u32,
     /// Names of the boats driven from ROS 2.
     pub vehicles: Vec<String>,
-    /// Validity of a request for a boat, in game time.
+    /// How long a request for a boat is valid, in game time.
     pub ttl: SimTime,
     /// Whether the truth is published.
     pub shows_truth: bool,

@@ -59,7 +59,7 @@ struct Asked {
     client: Box<dyn PendingQuery>,
 }
 
-/// The right to command the game.
+/// The game to command, and which commands ROS 2 may send.
 pub(super) struct Operator {
     pub(super) bus: Bus,
     pub(super) game: GameName,
