@@ -1,4 +1,4 @@
-//! The orders of a boat's MOOS applications: their last requests, as long as they are recent.
+//! Turns the recent requests of a boat's MOOS applications into its order.
 
 use crate::wire::Msg;
 use messages::Order;
@@ -50,7 +50,7 @@ pub(crate) struct BackSeat {
     is_overridden: bool,
     /// Why the helm has stopped the boat, if it has.
     all_stop: Option<String>,
-    /// Meaningless requests.
+    /// Counts of unusable requests.
     pub(crate) refusals: Refusals,
 }
 
@@ -121,7 +121,8 @@ impl BackSeat {
         })
     }
 
-    /// Why the boat holds although it has requests, for its node report.
+    /// The mode for the boat's node report: why the boat holds although it has requests, or
+    /// `DRIVE`.
     pub(crate) fn mode(&self) -> &str {
         match self {
             BackSeat {

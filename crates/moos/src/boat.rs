@@ -35,7 +35,7 @@ const DRAWINGS_MAX: usize = 256;
 /// Silence (s) after which a helm counts as restarted.
 const HELM_SILENCE_S: f64 = 3.0;
 
-/// The initial values of a community: a game begins without an operator pressing a button.
+/// The initial values of a community, so that no operator must press a button to begin a game.
 const START: [(&str, bool); 5] = [
     ("DEPLOY", true),
     ("RETURN", false),
@@ -90,7 +90,7 @@ impl BoatMind {
         let now = picture.stamp.valid_ns;
         if !self.has_begun && community.is_reachable() {
             self.has_begun = true;
-            // The mission's own initial values, such as `DEPLOY = false`, no longer apply.
+            // Discard the mission's own initial values, such as `DEPLOY = false`.
             drop(community.take_heard());
             for (key, value) in START {
                 community.publish(key, flag_of(value));

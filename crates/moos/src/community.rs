@@ -71,7 +71,7 @@ pub struct Community {
     notes: Vec<String>,
     /// Drawings of the applications for the shoreside.
     pub(crate) drawings: Vec<Msg>,
-    /// Malformed datagrams.
+    /// Number of malformed datagrams.
     pub(crate) malformed: u64,
     /// Values of applications that the bridge could not use.
     pub refusals: Refusals,
@@ -130,7 +130,7 @@ impl Community {
         self.publish_at(key, value, self.moos.now_s())
     }
 
-    /// Publishes a value of this MOOS time. Returns the message.
+    /// Publishes a value with this MOOS time. Returns the message.
     pub fn publish_at(&mut self, key: &str, value: Value, time_s: f64) -> Msg {
         let msg = match value {
             Value::Number(number) => Msg::number(Kind::NOTIFY, key, number, time_s),

@@ -151,7 +151,7 @@ impl Database {
             || self.clients.iter().any(|client| client.name == name);
         let refusal = match name {
             _ if name.is_empty() || name.len() > NAME_MAX => {
-                Some(format!("a name has 1 to {NAME_MAX} bytes"))
+                Some(format!("a name must have 1 to {NAME_MAX} bytes"))
             }
             _ if is_taken => Some(format!("the name {name} is in use")),
             _ if self.clients.len() >= CLIENTS_MAX => {

@@ -1,6 +1,6 @@
 //! Answers to requests for tags and grabs. The referee alone decides; it judges by positions and
-//! needs no request. The reply to a request states its decision, or why it could not grant the
-//! request.
+//! needs no request. The reply to a request states the referee's decision, or why the request could
+//! not be granted.
 
 use crate::community::Value;
 use messages::Picture;

@@ -159,7 +159,7 @@ pub enum Malformed {
     #[error("a name is not UTF-8 text")]
     Name,
     /// A compressed packet.
-    #[error("a packet is compressed, which no MOOS program does")]
+    #[error("a packet is compressed, which is not supported")]
     Compressed,
 }
 
