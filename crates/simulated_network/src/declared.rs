@@ -1,4 +1,4 @@
-//! The declarations of sessions, the queries of sessions, and the callbacks of both.
+//! Declarations and queries of sessions, with their callbacks.
 
 use crate::packet::{Kind, Packet};
 use bus::Parcel;
@@ -61,7 +61,7 @@ pub(crate) struct RoutedQuery {
     pub(crate) payload: Parcel,
 }
 
-/// A query with incomplete answers.
+/// A query that still awaits answers.
 pub(crate) struct PendingQuery {
     pub(crate) asker: usize,
     /// Number of sessions that may still answer.

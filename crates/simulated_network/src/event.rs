@@ -29,8 +29,8 @@ pub(crate) enum Event {
         up: bool,
         arrival: u64,
     },
-    /// One end of a link has received nothing for the duration of the lease, provided that the link
-    /// has not changed since.
+    /// The lease of one end of a link has expired. The end closes unless it has received something
+    /// since.
     LeaseOver {
         link: usize,
         at_hub: bool,
@@ -40,7 +40,7 @@ pub(crate) enum Event {
     Reconnect {
         session: usize,
     },
-    /// A session receives its own message, or a token that was already present when it asked.
+    /// A session receives its own message, or a token that was present when its watch began.
     Local {
         session: usize,
         local: Local,

@@ -174,7 +174,7 @@ impl State {
             .collect()
     }
 
-    /// From now on, one side of these links receives nothing.
+    /// From now on, the ends of this node's links may receive nothing: starts their leases.
     pub(crate) fn begin_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             for at_hub in [false, true] {
@@ -190,7 +190,8 @@ impl State {
         }
     }
 
-    /// Ends the lease if one end of a link receives nothing for this long.
+    /// Starts a lease: when it expires, this end of the link closes, unless it has received
+    /// something.
     fn begin_lease(&mut self, link: usize, at_hub: bool, wait: Duration) {
         let since_ns = self.now_ns;
         self.links[link].silent_since_ns[usize::from(at_hub)] = Some(since_ns);
@@ -296,8 +297,8 @@ impl State {
         }
     }
 
-    /// Closes a session, or ends its process. The others learn of this after earlier packets
-    /// arrive.
+    /// Closes a session, for example because its process has died. The others learn of this after
+    /// earlier packets have arrived.
     pub(crate) fn close(&mut self, session: usize) {
         if !std::mem::replace(&mut self.sessions[session].is_open, false) {
             return;

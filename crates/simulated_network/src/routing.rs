@@ -11,7 +11,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 impl State {
-    /// The other ends of those links of the hub that have a matching declaration of this kind.
+    /// The hub's links, except `but`, whose other end has a matching declaration of this kind, with
+    /// the number of each declaration.
     fn declared_beyond(
         &self,
         hub: usize,
@@ -241,7 +242,7 @@ impl State {
 
     /// Notifies all watchers that a token has appeared at the hub or disappeared.
     pub(crate) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) {
-        // A returning leaf may still be known by its old link.
+        // The hub may still know a returning leaf by its old link.
         if !is_there && self.tokens(hub, key, None).iter().any(|there| there == key) {
             return;
         }

@@ -92,9 +92,9 @@ pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
     if thread::panicking() {
         return false;
     }
-    // In zenoh, a waiting callback blocks all links. Here it would deadlock, so that every test
-    // detects the mistake.
-    assert!(!is_in_callback(), "callbacks must only hand over");
+    // In zenoh, a waiting callback blocks all links. Here it panics, so that every test detects the
+    // mistake.
+    assert!(!is_in_callback(), "callbacks must not wait");
     let deadline_ns = deadline.map(|deadline| world.ns_at(deadline));
     world
         .state

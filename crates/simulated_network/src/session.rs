@@ -116,7 +116,8 @@ impl SimulatedSession {
 
     /// Adds a declaration that lasts as long as the session. Returns its number.
     fn insert(&self, key: String, what: What) -> u64 {
-        // A closed session accepts no declaration; dropping one may use the network.
+        // A closed session refuses a declaration. It is dropped here, after the lock is released,
+        // because dropping it may use the network.
         let (id, _refused) = self.world.visit(|state| {
             state.number += 1;
             let id = state.number;

@@ -1,4 +1,4 @@
-//! The simulated network itself: time, order, faults, and reproducibility from the seed.
+//! Tests the simulated network itself: time, order, faults, and reproducibility from the seed.
 
 use bus::{Bus, Net, Priority, Watched, clock, inbox};
 use messages::topic::GameName;
