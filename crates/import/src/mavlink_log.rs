@@ -43,7 +43,9 @@ pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<Found, ImportError
     }
     vehicles.note(&mut found);
     if skipped > 0 {
-        found.notes.push(format!("{skipped} bytes between frames"));
+        found
+            .notes
+            .push(format!("ignored {skipped} bytes between frames"));
     }
     Ok(found)
 }

@@ -137,7 +137,7 @@ impl Bag {
         found.has_utc = first_s.fold(f64::INFINITY, f64::min) > 1e8;
         if !ignored.is_empty() {
             let topics: Vec<&str> = ignored.into_iter().collect();
-            let note = format!("of no boat, ignored: {}", topics.join(", "));
+            let note = format!("ignored topics of no boat: {}", topics.join(", "));
             found.notes.push(note);
         }
         if self.unreadable > 0 {
@@ -166,8 +166,7 @@ fn add_topic(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured)
         };
         match *measured {
             Measured::Fix(at) => found.positions.push(boat, source, *at_s, at),
-            // Each boat's odometry has a frame of its own, so positions on the globe take
-            // precedence.
+            // Each boat's odometry has its own frame, so positions on the globe take precedence.
             Measured::Height(height) => push(Quantity::Height, source, height),
             Measured::Place([x, y, height]) => {
                 push(Quantity::X, 10, x);

@@ -2,7 +2,7 @@
 
 use crate::{Logs, Quantity};
 
-/// Maximum time between two measurements between which a value is interpolated, s.
+/// Maximum gap between two measurements across which a value is interpolated, s.
 const GAP_MAX_S: f64 = 2.0;
 /// Time after which a command that is not repeated is no longer known, s.
 const COMMAND_MAX_S: f64 = 5.0;
@@ -19,8 +19,8 @@ const MEASURED: [(&str, Quantity); 6] = [
     ("yaw_rate_deg_s", Quantity::YawRate),
 ];
 
-/// The log of a boat as CSV with the columns of `squall identify`, one row for each position; other
-/// measurements are interpolated, commands are the last ones given. Columns without any value are
+/// The log of a boat as CSV with the columns of `squall identify`, one row for each position. Other
+/// measurements are interpolated, and commands keep their last value. Columns without any value are
 /// omitted.
 pub fn table(logs: &Logs, boat: &str) -> String {
     let times = logs
@@ -58,7 +58,7 @@ pub fn table(logs: &Logs, boat: &str) -> String {
                 (at_s - given_s <= COMMAND_MAX_S).then_some(value)
             })
             .collect();
-        // Two positions at the same moment, from two sentences.
+        // Skip a second position at the same moment, as from two sentences.
         if *at_s - before_s < 1e-3 || commanded.iter().any(Option::is_none) {
             continue;
         }

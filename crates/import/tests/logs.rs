@@ -36,7 +36,7 @@ fn read_text(name: &str, text: &str, map: Option<&str>) -> Result<Imported, Stri
     read.map_err(|error| error.to_string())
 }
 
-/// Asserts that a value is near what it should be.
+/// Asserts that a value is close to the expected one.
 #[track_caller]
 fn near(found: Option<f64>, wanted: f64, tolerance: f64, what: &str) {
     let found = found.unwrap_or_else(|| panic!("{what} is missing"));
@@ -87,7 +87,7 @@ fn a_bag_of_ros_1_in_either_compression_is_read() {
     }
 }
 
-/// What only the bags contain: y of the velocity is to port there, and yaw anticlockwise.
+/// Checks what only the bags contain. Their y velocity is to port, and their yaw anticlockwise.
 #[track_caller]
 fn assert_motion_and_thrust(imported: &Imported) {
     let at = |quantity| imported.logs.at("wamv", quantity, START_S + 7.0);
@@ -154,7 +154,7 @@ fn sentences_are_timed_by_their_receiver_or_by_themselves() {
     );
 }
 
-/// Expected: the last messages of each kind as `DFReader` of pymavlink reads them.
+/// Expects the last message of each kind, as pymavlink's `DFReader` reads it.
 #[test]
 fn a_log_of_the_real_firmware_is_read() {
     let imported = read("rover.bin");
@@ -208,7 +208,7 @@ fn tables_of_loggers_are_read_by_the_names_and_units_of_their_columns() {
     let at = |quantity, s| imported.logs.at("track", quantity, START_S + s);
     near(at(Quantity::Y, 2.0), 4.0, 0.01, "north");
     near(at(Quantity::Surge, 1.0), 2.0, 0.001, "surge");
-    // Over north, not back through south.
+    // The heading is interpolated through north, not back through south.
     near(at(Quantity::Heading, 1.5), -5.0, 1e-9, "heading");
     let named = "timestamp,boat,x_m,y_m,yaw_rad,speed_kn\n\
                  2026-05-01 12:00:00,Blue One,0,0,1.5707963,1\n\
