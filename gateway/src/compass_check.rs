@@ -32,7 +32,8 @@ const RUNS_MIN: usize = 6;
 /// Minimum scatter of the runs' velocities, m/s: a few runs may agree by chance.
 const SCATTER_MIN_M_S: f64 = 0.15;
 /// An offset is a fault if it exceeds this angle (rad) by this many standard deviations.
-/// Consecutive runs are correlated. In a simulated day in a gale (`tests/gale`), 4.5 were too few.
+/// Consecutive runs are correlated, so 4.5 were too few in a simulated day in a gale
+/// (`tests/gale`).
 const OFFSET_MAX_RAD: f64 = 0.25;
 const SIGMAS: f64 = 5.0;
 /// Maximum length of the mean of all headings as unit vectors: two headings must be at least 57

@@ -231,7 +231,7 @@ fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
 
 /// `to`, or the nearest value that `growth` allows; decreases towards zero are not limited.
 fn slewed(from: f64, to: f64, growth: f64) -> f64 {
-    // Growth is limited, decay is not: zero is always allowed, so a stop is never slewed.
+    // Zero is always allowed, so a stop is never slewed.
     let least = from.min(0.0) - growth;
     let most = from.max(0.0) + growth;
     to.clamp(least, most)

@@ -24,7 +24,7 @@ pub fn read_mission(text: &str) -> Result<Mission, String> {
         .map_err(|(line, why)| line.map_or(why.clone(), |line| format!("line {line}: {why}")))
 }
 
-/// A mistake: its line, if it is in a line, and a description.
+/// A mistake: its line number, if known, and a description.
 type Mistake = (Option<usize>, String);
 
 /// The state defined by a mission's lines so far.

@@ -97,8 +97,8 @@ impl ControlLog {
             operator == Operator::Secondary
         });
         match (report.operator, self.mode_mismatch(now)) {
-            // Check foreign orders first: a boat under two masters also seems to disobey or not to
-            // receive, and the operator must learn that there is another gateway.
+            // Check foreign orders first: a boat with two masters also appears to disobey or not to
+            // listen, and the operator must learn that there is another gateway.
             _ if is_ours && self.echo.is_foreign(now) => Some(ControlFault::ForeignOrders),
             (_, None) if is_ours && self.echo.is_deaf(now) => Some(ControlFault::Deaf),
             (_, Some(mode)) if is_ours => Some(ControlFault::Disobeyed(mode.letter())),

@@ -42,10 +42,10 @@ struct Breach {
 }
 
 impl Breach {
-    /// Whether the path is sound, or has been unsound for less than `debounce_s`. A breach ends
-    /// when paths have been sound for more than `ends_s`.
-    fn is_well(&mut self, now: SimTime, is_sound: bool, (debounce_s, ends_s): (f64, f64)) -> bool {
-        if is_sound {
+    /// Whether the path is clear, or has been blocked for less than `debounce_s`. A breach ends
+    /// when paths have been clear for more than `ends_s`.
+    fn is_well(&mut self, now: SimTime, is_clear: bool, (debounce_s, ends_s): (f64, f64)) -> bool {
+        if is_clear {
             self.between = self
                 .between
                 .filter(|(_, last)| (now - *last).as_s() <= ends_s);
@@ -88,7 +88,7 @@ impl GeofenceWatch {
         let room_m = self.area.clearance_m(at);
         // Check the whole path, not only its end, which could lie beyond a keep-out or a concave
         // corner.
-        let is_sound = |path: &Vec<Leg>| {
+        let is_clear = |path: &Vec<Leg>| {
             let mut from = at;
             path.iter().all(|leg| {
                 let end = at + leg.end;
@@ -100,16 +100,16 @@ impl GeofenceWatch {
                         && (leg.slack_m == 0.0 || self.area.clearance_m(end) >= leg.slack_m)
             })
         };
-        let is_straight_sound =
-            self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_sound);
-        let is_drift_sound = self.drifting_path(now, motion).iter().all(is_sound);
+        let is_straight_clear =
+            self.area.contains(at) && self.straight_paths(motion.0).iter().all(is_clear);
+        let is_drift_clear = self.drifting_path(now, motion).iter().all(is_clear);
         // A single fix scattered across the fence is not a breach. In waves a boat yaws, and its
         // path to rest swings with it, so a momentarily clear path does not end a breach.
         let is_well = [
             self.straight
-                .is_well(now, is_straight_sound, (self.rules.debounce_s, 0.0)),
+                .is_well(now, is_straight_clear, (self.rules.debounce_s, 0.0)),
             self.drifting
-                .is_well(now, is_drift_sound, (self.rules.debounce_s, BREACH_ENDS_S)),
+                .is_well(now, is_drift_clear, (self.rules.debounce_s, BREACH_ENDS_S)),
         ];
         is_well == [true; 2]
     }

@@ -29,8 +29,8 @@ impl Backoff {
     /// The wait before the next attempt.
     pub(super) fn wait(&mut self) -> Duration {
         let wait = self.next;
-        // Wait at most a second between attempts: an uncontrolled boat travels two or three metres
-        // in that time.
+        // By default, the wait is at most a second, in which an uncontrolled boat travels two or
+        // three metres.
         self.next = wait.saturating_mul(2).min(self.longest);
         wait
     }

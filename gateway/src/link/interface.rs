@@ -10,9 +10,9 @@ use thiserror::Error;
 /// The timeouts of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkSettings {
-    /// Time without bytes after which a peer counts as lost. For a listening link, `None` means
-    /// never. The peer of a pseudo-terminal may stay silent forever, a peer of a UDP server for at
-    /// most 10 s.
+    /// Time without bytes after which a peer counts as lost; `None` means never. In any case, the
+    /// peer of a pseudo-terminal may stay silent forever, and a peer of a UDP server for at most 10
+    /// s.
     pub silence: Option<Duration>,
     /// The wait before the second attempt; it then doubles each time.
     pub retry_first: Duration,

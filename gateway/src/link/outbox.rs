@@ -11,7 +11,8 @@ pub(super) enum Priority {
     Normal,
     /// Like normal, but first discards bytes of earlier requests that the system still holds.
     Stop,
-    /// Not displaced by normal requests: a stop must not lose the race against a set-point.
+    /// Displaced only by another shutdown message: the final stop must not lose the race against a
+    /// set-point.
     Shutdown,
 }
 

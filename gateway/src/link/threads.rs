@@ -67,7 +67,7 @@ impl Threads {
         work: impl FnOnce() + Send + 'static,
     ) -> io::Result<JoinHandle<()>> {
         // Count the thread before it starts, so that a link closing at this moment also waits for
-        // it. If the spawn fails, dropping the guard undoes it.
+        // it. If the spawn fails, dropping `running` undoes this.
         self.state.lock().running += 1;
         let running = RunningThread(Arc::clone(self));
         thread::Builder::new().name(name.to_owned()).spawn(move || {

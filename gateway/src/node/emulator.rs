@@ -109,7 +109,8 @@ pub fn emulate(
     let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
     let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
     let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
-    // A back seat runs in real time, so lockstep is rejected: its clock stops between decisions.
+    // A back seat runs in real time, so lockstep is rejected: a lockstep game's clock stops between
+    // decisions.
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;

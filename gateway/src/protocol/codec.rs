@@ -81,7 +81,7 @@ pub trait Codec {
     /// Begins the upload of a mission.
     ///
     /// # Errors
-    /// What is wrong with the mission.
+    /// The fault of the mission.
     fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String>;
 
     /// Continues the upload of a mission; returns `Done` if there is none.

@@ -294,7 +294,7 @@ impl Codec for Mavlink {
     fn begin_link(&mut self) {
         self.framer.interrupt();
         self.boat.forget(self.settings.boat_system);
-        // The boat may be a different one, or have restarted, so earlier requests no longer hold.
+        // The boat may be a different one, or have restarted, so earlier requests no longer apply.
         (self.asked, self.upload) = (None, None);
         (self.heartbeat_due, self.streams_due) = (SimTime::LONG_AGO, SimTime::LONG_AGO);
         self.answers.clear();
@@ -424,7 +424,7 @@ impl Codec for Mavlink {
     fn stop_message(&self) -> Vec<u8> {
         let mut copy = self.clone();
         let mut out = Vec::new();
-        // The bytes stay the same as long as nothing changes.
+        // A new writer, so that the bytes stay the same as long as nothing changes.
         copy.writer = Writer::new(self.settings.system, self.settings.component);
         copy.write_set_point(SetPoint::ZERO, &mut out);
         if copy.boat.mode.is_some() && copy.boat.is_ours(copy.asked.as_ref()) {

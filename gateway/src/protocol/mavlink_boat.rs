@@ -283,7 +283,8 @@ impl Boat {
                 }));
             }
             MavMessage::SYS_STATUS(status) => {
-                // Both messages may report the same battery; every board sends SYS_STATUS.
+                // SYS_STATUS and BATTERY_STATUS may report the same battery; every board sends
+                // SYS_STATUS.
                 let volts = millivolts(status.voltage_battery);
                 self.has_volts = volts.is_some();
                 let left_pct = charge_pct(status.battery_remaining);

@@ -38,7 +38,7 @@ impl StatusTexts {
         let letters = status.text.iter().take_while(|letter| **letter != 0);
         let capacity = status.text.len();
         let letters: Vec<u8> = letters.copied().collect();
-        // MAVLink 1 has neither field: the message is complete.
+        // MAVLink 1 has neither `id` nor `chunk_seq`: the message is complete.
         if status.id == 0 {
             return say(in_words(&letters));
         }

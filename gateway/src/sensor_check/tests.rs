@@ -1,4 +1,4 @@
-//! The sensor check: missing data, and the reasons.
+//! Tests the sensor check: missing data, and the reasons.
 
 use super::*;
 use crate::nmea::with_checksum;

@@ -18,13 +18,13 @@
 //!     └──────────┘
 //! ```
 //!
-//! *Ready* means: link up, control granted, navigation sound, inside the geofence, battery not low,
-//! order fresh. *Fit* is the same without the order. We send set-points that move the boat only in
-//! `Armed`, and only if it is ready in that very step and no other boat is in the way. After a
-//! failsafe the boat stops, unless the gateway file assigns a task of the boat's own controller to
-//! that cause and nothing that the task needs has failed. The state machine has no clock:
-//! `Conditions` state what is fresh, sound or granted now, so that a test can try every state with
-//! every input.
+//! *Ready* means: link up, control granted, navigation reliable, inside the geofence, battery not
+//! low, order fresh. *Fit* is the same without the order. We send set-points that move the boat
+//! only in `Armed`, and only if it is ready in that same step and no other boat is in the way.
+//! After a failsafe the boat stops, unless the gateway file assigns a task of the boat's own
+//! controller to that cause and nothing that the task needs has failed. The state machine has no
+//! clock: `Conditions` state what is fresh, reliable or granted now, so that a test can try every
+//! state with every input.
 
 mod cause;
 

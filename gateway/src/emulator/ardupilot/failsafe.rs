@@ -1,4 +1,4 @@
-//! The ground station failsafe of an emulated ArduPilot boat, as in Rover; works without a gateway.
+//! The ground station failsafe of an emulated ArduPilot boat, as in Rover. It needs no gateway.
 
 use super::ArduPilot;
 use crate::mavlink::RoverMode;

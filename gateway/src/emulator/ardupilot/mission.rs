@@ -60,7 +60,7 @@ fn is_waypoint(item: &MISSION_ITEM_INT_DATA) -> bool {
 }
 
 impl MissionStore {
-    /// The number of waypoints; the first item is the home.
+    /// The number of waypoints.
     pub(super) fn waypoints(&self) -> usize {
         // Item 0 is always the home in ArduPilot's missions.
         self.items

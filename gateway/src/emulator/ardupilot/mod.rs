@@ -219,7 +219,7 @@ impl ArduPilot {
         let is_station = f64::from(*system) == self.parameters.value("SYSID_MYGCS");
         match message {
             MavMessage::HEARTBEAT(_) if is_station => self.station.heard_at = Some(now),
-            // Not acknowledged, as from version 4.6 on.
+            // Rover has not acknowledged this message since version 4.6.
             MavMessage::SET_MODE(set) => {
                 self.command_own_mode(set.base_mode, set.custom_mode);
             }

@@ -187,8 +187,8 @@ impl SetPoints {
         self.follow(now, &target, speed_max_m_s)
     }
 
-    /// Sets a position, or a speed with the heading of the velocity, a different heading, or a rate
-    /// of turn. Follows Rover's `handle_set_position_target_local_ned`, including its sign of the
+    /// Sets a position, or a speed with a rate of turn or a heading: a separate one, or that of the
+    /// velocity. Follows Rover's `handle_set_position_target_local_ned`, including its sign of the
     /// speed.
     fn follow(
         &mut self,
@@ -211,7 +211,7 @@ impl SetPoints {
             .map(|v| if has(VELOCITY) { v.into() } else { 0.0 });
         let [yaw_rad, rate_rad_s] = target.yaw.map(f64::from);
         let course = match (has(YAW), has(YAW_RATE)) {
-            // Rover accepts only one of them, and ignores a message with both.
+            // Rover ignores a message with both a yaw and a yaw rate.
             (true, true) => return Err("set-point ignored: yaw and yaw rate"),
             (true, false) => Course::Heading(yaw_rad + target.frame_rad),
             (false, true) => Course::Turn(rate_rad_s),

@@ -284,7 +284,7 @@ impl ArduPilot {
             mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
             autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode,
-            // Depends on the mode, whether armed or not.
+            // Rover's state depends on the mode, not on whether the boat is armed.
             system_status: match self.mode {
                 _ if self.station.is_triggered => MavState::MAV_STATE_CRITICAL,
                 RoverMode::Hold => MavState::MAV_STATE_STANDBY,
