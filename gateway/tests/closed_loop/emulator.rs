@@ -1,4 +1,4 @@
-//! The emulated boat on its own: what it ignores and what it sends. The rest is in
+//! Tests the emulated boat alone: what it ignores and what it sends. The other tests are in
 //! `scenarios/emulator.txt`.
 
 use crate::boat::emulated;

@@ -1,5 +1,5 @@
-//! The gateway and the emulated boat in a closed loop in memory: the test controls time and injects
-//! faults.
+//! Tests the gateway with the emulated boat in a closed loop, in memory. The tests control time and
+//! inject faults.
 //!
 //! Most tests are text files (see `scenarios/README.md`).
 

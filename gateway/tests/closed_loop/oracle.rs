@@ -25,8 +25,8 @@ pub(crate) struct Oracle {
     /// E-stops in force: boat, fleet.
     pub(crate) stops: [bool; 2],
     pub(crate) armed: bool,
-    /// Time after a stop for lack of orders in which the gateway may arm the boat itself (s), and
-    /// when the boat was last stopped for that reason.
+    /// Time after a stop for lack of orders within which the gateway may arm the boat itself (s),
+    /// and when the boat was last stopped for that reason.
     pub(crate) rearm_within_s: f64,
     pub(crate) starved: Option<SimTime>,
     pub(crate) link_up: bool,

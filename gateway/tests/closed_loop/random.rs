@@ -1,4 +1,4 @@
-//! Random scenarios with any events in any order; the oracle checks every sentence.
+//! Runs random scenarios with any events in any order; the oracle checks every sentence.
 
 use crate::script::{play, played};
 use proptest::prelude::*;

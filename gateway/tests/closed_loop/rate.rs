@@ -1,4 +1,4 @@
-//! The rates at which orders become sentences and sentences become reports.
+//! Tests the rates at which orders become sentences, and sentences become reports.
 
 use crate::script::played;
 use gateway::bridge::Input;

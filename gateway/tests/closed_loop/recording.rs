@@ -1,4 +1,4 @@
-//! A recording, complete or truncated, is reproduced exactly by its replay.
+//! Tests that a replay exactly reproduces its recording, complete or truncated.
 
 use crate::script::played;
 use gateway::bridge::Event;

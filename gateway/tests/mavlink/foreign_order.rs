@@ -1,5 +1,5 @@
-//! Foreign orders to an ArduPilot boat: from a second gateway, or from a ground station that steers
-//! it.
+//! Tests foreign orders to an ArduPilot boat: from a second gateway, or from a ground station that
+//! steers it.
 
 use crate::rig::{Rig, e7, frame, plan};
 use gateway::bridge::{Bridge, Input};

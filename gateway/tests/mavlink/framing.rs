@@ -1,5 +1,5 @@
-//! The MAVLink framer: frames from a different program, split anywhere, corrupted, and frames that
-//! must be rejected.
+//! Tests the MAVLink framer with frames from a different program, split anywhere or corrupted, and
+//! with frames that must be rejected.
 
 use gateway::mavlink::dialect::{
     GpsFixType, HEARTBEAT_DATA, MavMessage, MavModeFlag, MavType, PARAM_VALUE_DATA,
@@ -147,7 +147,7 @@ const FALSE_START: [u8; 10] = [0xFD, 0xFF, 0, 0, 1, 1, 1, 0xAA, 0xAA, 0xAA];
 #[test]
 fn noise_like_the_header_of_an_unknown_message_swallows_and_delays_no_frame() {
     let heartbeat = golden()["heartbeat"].clone();
-    // For noise of any length, so that the first frame lies within the stated length, across its
+    // Try noise of any length, so that the first frame lies within the stated length, across its
     // end, or after it.
     for noise in 0..=FRAME_MAX {
         let stream = [&FALSE_START[..], &vec![0xAA; noise], &heartbeat, &heartbeat].concat();

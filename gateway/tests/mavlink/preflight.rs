@@ -1,4 +1,4 @@
-//! The pre-flight check of a MAVLink boat.
+//! Tests the pre-flight check of a MAVLink boat.
 
 use crate::boat::Boat;
 use crate::rig::plan;

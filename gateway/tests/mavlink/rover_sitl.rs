@@ -1,5 +1,5 @@
-//! An emulated ArduPilot boat answers as ArduRover 4.6.3 did in SITL, which provided the expected
-//! values.
+//! Tests that an emulated ArduPilot boat answers as ArduRover 4.6.3 did in SITL, which provided the
+//! expected values.
 
 #![expect(deprecated, reason = "ground stations send the older messages, too")]
 

@@ -1,4 +1,4 @@
-//! The NMEA framer under noise: loses no sentence, invents none, and uses bounded memory.
+//! Tests the NMEA framer under noise: it loses no sentence, invents none, and uses bounded memory.
 
 use crate::bodies;
 use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum, with_checksum};

@@ -1,5 +1,5 @@
-//! Sentences and their meaning as listed in `golden.txt`, and other sentences that we write or
-//! reject.
+//! Checks sentences against their meanings in `golden.txt`, and tests other sentences that we write
+//! or reject.
 
 use crate::bodies;
 use crate::sentences::values;

@@ -35,7 +35,7 @@ fn tolerance(sentence: &Sentence, field: &str) -> Option<(f64, bool)> {
         ("heading_deg", _) => (TENTH, true),
         ("course_deg" | "course_true_deg" | "course_magnetic_deg", _) => (TENTH, true),
         ("thrust", _) if mode == Some(Mode::Speed) => (THOUSANDTH, false),
-        // One per cent closer to zero where rounding both would take their sum above 100 %.
+        // The difference is reduced by one if rounding would take the sum above 100 %.
         ("difference", Sentence::Command(_)) => (1.0, false),
         ("thrust" | "difference" | "charge" | "charge_used" | "hours" | "throttle_pct", _) => {
             (WHOLE, false)
