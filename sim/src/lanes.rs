@@ -1,13 +1,13 @@
 //! Numbers in lanes, as in wide registers.
 //!
 //! Every operation is a plain loop over all lanes, which compiles to one instruction, or to several
-//! on narrower registers. The results have the same bits, because each lane is computed separately,
-//! rounded by IEEE 754 and never fused.
+//! on narrower registers. The results are bit-identical, because each lane is computed separately
+//! and rounded by IEEE 754, and operations are never fused.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// Single-precision numbers in the widest registers: this many wave components are computed side by
-/// side.
+/// Number of wave components computed side by side: single-precision numbers in the widest
+/// registers.
 // Crates such as `wide` choose the registers at compile time; with plain arrays the choice is made
 // at run time.
 pub(crate) const LANES: usize = 16;

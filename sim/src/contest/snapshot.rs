@@ -38,8 +38,9 @@ pub enum RestoreError {
 }
 
 impl Contest {
-    /// The changing state as bytes, tagged with the game. A contest of the same game restored from
-    /// them continues bit for bit. Inputs kept for [`Contest::take_inputs`] are not included.
+    /// The changing state as bytes, tagged with the game. A contest of the same game that is
+    /// restored from them continues identically, bit for bit. Inputs kept for
+    /// [`Contest::take_inputs`] are not included.
     pub fn snapshot(&self) -> Vec<u8> {
         // Sea, faults and contact engine are omitted: they are functions of scenario, seed and
         // time.

@@ -1,6 +1,6 @@
 //! A Gauss-Markov process with a cached window of grid points and linear interpolation.
 //!
-//! Outside the window, points are recomputed: slower, but with the same bits.
+//! Points outside the window are recomputed, which is slower but gives the same bits.
 
 use super::gauss_markov::{GaussMarkov, Pair, Trail};
 

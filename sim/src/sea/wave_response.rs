@@ -186,8 +186,8 @@ struct Sums {
     heave_acceleration: Lanes<f32>,
 }
 
-/// The part of [`WaveResponse::at`] before the sums are used, which would affect register
-/// allocation here.
+/// The part of [`WaveResponse::at`] that computes the sums. Using the sums here would affect
+/// register allocation.
 struct At<'a> {
     response: &'a WaveResponse,
     pose: Pose,
