@@ -107,8 +107,8 @@ impl Closest {
             .all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
             && lag.is_none_or(Lag::is_sound);
-        // Incoming pictures are validated, so this is a bug: tests stop, and a boat on the water
-        // continues without this function.
+        // Incoming pictures are validated, so an invalid number is a bug: tests stop, and a boat on
+        // the water continues without this function.
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
