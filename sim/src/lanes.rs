@@ -6,14 +6,14 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// Number of wave components computed side by side: single-precision numbers in the widest
-/// registers.
+/// Number of single-precision numbers in the widest registers. As many wave components are computed
+/// side by side.
 // Crates such as `wide` choose the registers at compile time; with plain arrays the choice is made
 // at run time.
 pub(crate) const LANES: usize = 16;
 
-/// Components of a row. Each position in the row has its own partial sum over the components, so
-/// that the additions do not wait for each other.
+/// Number of components in a row. Each position in the row has its own partial sum over the
+/// components, so that the additions do not wait for each other.
 pub(crate) const ROW: usize = 4;
 
 /// Rows side by side, or the number of values for each component of a row.

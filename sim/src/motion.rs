@@ -52,8 +52,8 @@ type Motions<const N: usize> = Motion<Lanes<f64, N>>;
 pub struct Fleet {
     count: usize,
     rows: Vec<Row<MANY>>,
-    /// The boats beyond the full rows, if there are at most `FEW`; otherwise they have an
-    /// incomplete row.
+    /// The boats beyond the full rows, if there are at most `FEW`. More than that form an
+    /// incomplete row of `rows`.
     last: Option<Row<FEW>>,
     instructions: Instructions,
 }

@@ -18,7 +18,7 @@ pub struct ThrusterModel {
     /// Settings at full ahead and full astern.
     ahead: f64,
     astern: f64,
-    /// Thrust at full ahead and full astern, N.
+    /// Thrust at full ahead, N.
     pub newton_max: f64,
     /// Thrust at full astern (negative), N.
     pub newton_min: f64,

@@ -164,8 +164,8 @@ fn tags_succeed_at_random_with_the_seed_of_the_game() {
 
 #[test]
 fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
-    // Start and constant ordered heading; the first step at which it is set back, with x, y, speed
-    // and heading then; and x, y at 30 s, long after it has passed the flag.
+    // Start and constant ordered heading; the first step at which the boat is set back, with x, y,
+    // speed and heading then; and x, y at 30 s, long after the boat has passed the flag.
     type Case = (&'static str, (f64, f64, f64), f64, [f64; 4], [f64; 2]);
     let cases: [Case; 6] = [
         (

@@ -216,9 +216,9 @@ pub(super) struct Ways {
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// For the middle path: the contact's position after the turn, its motion during the turn and
-    /// the fraction of that motion after which it is nearest, its velocity after the turn, and the
-    /// time after the turn at which it is nearest.
+    /// For the middle path: the contact's position after the turn; its motion during the turn; the
+    /// fraction of that motion after which it is nearest; its velocity after the turn; and the time
+    /// after the turn at which it is nearest.
     middle: Vector,
     past: Vector,
     share: f32,

@@ -33,7 +33,7 @@ const NOWHERE_M: f64 = 1e9;
 /// A boat that is tagged within this fraction of the untag radius from the centre must first leave
 /// its untag place.
 const WELL_INSIDE: f64 = 0.5;
-/// Fraction of that radius beyond which the boat counts as having left.
+/// Multiple of that radius beyond which the boat counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
 
 /// Another boat.

@@ -223,7 +223,7 @@ pub enum TagChoice {
     /// The nearest.
     #[serde(alias = "Nearest")]
     Nearest,
-    /// The first in the game's list.
+    /// The first in the scenario's order.
     #[serde(alias = "First")]
     First,
     /// The nearest with a flag, or else the nearest.

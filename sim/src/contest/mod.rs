@@ -274,7 +274,7 @@ impl Contest {
         }
     }
 
-    /// Applies a recorded input. An input refused in the recording is refused again.
+    /// Applies a recorded input. An input that was refused when it was recorded is refused again.
     pub fn give(&mut self, input: Input) {
         match input {
             Input::Pictured => drop(self.pictures()),

@@ -42,8 +42,8 @@ impl Contest {
     /// restored from them continues identically, bit for bit. Inputs kept for
     /// [`Contest::take_inputs`] are not included.
     pub fn snapshot(&self) -> Vec<u8> {
-        // Sea, faults and contact engine are omitted: they are functions of scenario, seed and
-        // time.
+        // Sea and faults are omitted because they are functions of scenario, seed and time. The
+        // contact engine has no state.
         let (radio, sightings) = self.messages();
         let body = bytes(&(self.world.state(), &self.state, radio, sightings));
         let mut snapshot = MAGIC.to_vec();

@@ -53,7 +53,7 @@ fn keep_speed(
     };
     let decision_s = server.contest.scenario().decision().as_s();
     let now = clock::now();
-    // Lost time is not recovered.
+    // Lost time is not made up for.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);
     // The speed may change, and the game may be paused, during the wait.
     while clock::now() < due

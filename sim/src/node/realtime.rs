@@ -30,7 +30,7 @@ pub(super) fn play(
         }
         let late = clock::since(due);
         if late > period {
-            // Lost time is not recovered: the game runs slower than requested and reports it.
+            // Lost time is not made up for: the game runs slower than requested and reports it.
             server.overruns += 1;
             due = clock::now();
         }
