@@ -136,7 +136,7 @@ pub struct Rules {
     #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
     #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,
-    /// Duration of each team's power play, s: one of its boats is out of action; 0: none.
+    /// Time for which each team is one boat short, s; 0: none.
     #[schemars(rename = "power_play_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "power_play", "default" = 0))]
     pub power_play: SimTime,
