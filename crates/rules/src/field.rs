@@ -3,7 +3,7 @@
 //! ```text
 //!        corner 1 ──────────────── corner 2        `along` runs from the first team's end to the
 //!           │  first  :  second  │                 second's; `across` is a quarter turn to port of it.
-//!   across ▲│    ⚑    :    ⚑     │                 The flags are on the long middle line, `flag_inset_m`
+//!   across ▲│    ⚑    :    ⚑     │                 Flags lie on the long middle line, `flag_inset_m`
 //!          ││  team   :   team   │                 from the ends; the scrimmage line halves the field.
 //!        corner 0 ──────────────── corner 3
 //!              along ▶
