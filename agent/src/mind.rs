@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 /// The decision-maker of one boat.
 ///
-/// Given identical pictures, words and proposals from the start, it must return identical orders on
-/// every machine. A mind reads no clock and takes randomness only from its own
+/// Given identical pictures, messages and proposals from the start, it must return identical orders
+/// on every machine. A mind reads no clock and takes randomness only from its own
 /// [`primitives::stream::Stream`]. A mind whose decisions are made by other programs is only for
 /// games paced by a clock.
 pub trait Mind: Any + Send {

@@ -8,7 +8,7 @@ use scenario::Scenario;
 use scenario::strategy::{Behaviour, Mark, Parameter, Place, Shape, Task};
 use std::collections::BTreeSet;
 
-/// Warnings about a valid game: requirements of each boat's role that the boat cannot meet.
+/// Warnings about a valid game: points in the boats' roles that the boats cannot reach.
 ///
 /// A boat that has reached a point of a `waypoint` or a corner of a `loiter` turns at once towards
 /// the next one. If that point lies inside the turning circle by more than the capture radius, the

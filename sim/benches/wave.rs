@@ -1,5 +1,5 @@
 //! The cost of the waves at one boat, by number of components: forces in the horizontal plane,
-//! attitude, and surface alone. The first two also by instruction set.
+//! attitude, and surface alone. The first two are also measured by instruction set.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use primitives::frame::{Ned, Pose};

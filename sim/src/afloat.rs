@@ -1,4 +1,4 @@
-//! A game without a referee, for `squall sim --afloat`: some of its boats float in its sea.
+//! The sea of a game with some of its boats but without its rules, for `squall sim --afloat`.
 //!
 //! Emulated boats float in this water while their game treats them as real. Sea, boats and sensors
 //! are as in the game. Tags, flags, radio and limits on sharing have no effect.
@@ -32,7 +32,8 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     for name in names {
         scenario.vehicle_named(name)?;
     }
-    // Includes all boats of the game, so that those afloat start where the game expects them.
+    // Compute the start positions of all boats of the game, so that those afloat start where the
+    // game expects them.
     let poses = spawn::start_positions(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {

@@ -6,8 +6,8 @@
 //! back.
 //!
 //! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has
-//! no memory: a snapshot needs none of its state, and boats without contact have the same bytes
-//! whether or not the engine ran for others.
+//! no memory: a snapshot needs none of its state, and boats without contact move identically, bit
+//! for bit, whether or not the engine ran for others.
 
 use crate::hull::{HullModel, Planar};
 use primitives::angle::wrap_pi;
@@ -133,7 +133,7 @@ impl ContactModel {
     ) -> ContactModel {
         let hull = |(length_m, beam_m): (f64, f64)| {
             // Use a capsule, because rapier resolves it at about half the cost of a box, and a bow
-            // is more round than square.
+            // is rounder than a box.
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
             HullShape {
@@ -186,7 +186,7 @@ impl ContactModel {
     }
 
     /// Resolves all contacts of a tick. `near` lists the pairs that were within
-    /// [`ContactModel::reach_m`] at its start.
+    /// [`ContactModel::reach_m`] at the start of the tick.
     pub fn resolve(&self, models: &[HullModel], displacements: &mut [Displacement], near: &[Pair]) {
         let mut touches = self.touches(displacements, near);
         if touches.is_empty() {
@@ -320,7 +320,8 @@ impl ContactModel {
         }
     }
 
-    /// The collision groups of hulls: fixed shapes and, if solid, other hulls.
+    /// The collision groups of hulls, which collide with fixed shapes and, if solid, with other
+    /// hulls.
     fn met_by_hulls(&self) -> InteractionGroups {
         let met = if self.hulls_are_solid {
             Group::ALL
@@ -458,7 +459,7 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     }
 }
 
-/// Reads a boat back from rapier's world. Without an active contact, the boat keeps our motion.
+/// Reads a boat back from rapier's world.
 ///
 /// Uses rapier's impulse rather than its change of velocity: a hull has more mass across than
 /// along, so an oblique push does not move it in the direction of the push. Using the change of

@@ -14,7 +14,7 @@ use thiserror::Error;
 
 /// How long a boat is dead reckoned with constant motion after its last fix. After that it is
 /// assumed to stay at its position. The error grows with the square of the time: for a boat that
-/// slows down by 1 m/s² it is half a metre after one second and two metres after two. A boat that
+/// decelerates at 1 m/s², it is half a metre after one second and two metres after two. A boat that
 /// reports nothing probably slows down: it receives nothing either, and its own watchdog stops its
 /// thrusters. Also, an extrapolated boat must not reach a flag.
 pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
@@ -80,8 +80,8 @@ impl Track {
             sway: nav.sway_m_s,
             yaw: nav.yaw_rate_rad_s,
         };
-        // A fix may be later than the world's tick; then this extrapolates back a little. After a
-        // second the boat is assumed to stay at its position.
+        // A fix may be later than the world's tick; then the position is extrapolated back a
+        // little. After a second the boat is assumed to stay at its position.
         let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
         let pose = dead_reckoned(nav.pose(), nu, span.as_s());
         Some((

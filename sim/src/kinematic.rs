@@ -9,7 +9,7 @@
 //! rudder   = PID_heading(error) while there is thrust, else 0
 //! v_next   = map(thrust) (1 - turn_loss |rudder| / 100), within v - deceleration dt and v + acceleration dt
 //! heading += ±rudder turn_rate / 100 (1 + (|thrust| - 50) / 50) dt + rotate dt;   no rudder where v_next is 0
-//! v        = (v_next + v) / 2;   the position goes v dt along the circular mean of the old and new heading
+//! v        = (v_next + v) / 2;   the position moves v dt along the circular mean of the old and new heading
 //! ```
 //!
 //! Averaging old and new speed halves the acceleration limits: a configured 0.15 m/s² becomes
@@ -112,8 +112,9 @@ impl KinematicState {
         self.heading_deg.to_radians()
     }
 
-    /// Removes the velocity along the unit vector `out`, in both directions, and turns to the
-    /// remaining velocity. A head-on boat has no velocity left; it turns to starboard.
+    /// Removes the velocity along the unit vector `out`, in both directions, and turns the boat in
+    /// the direction of the remaining velocity. A boat that moves exactly along `out` has no
+    /// velocity left; it turns to starboard.
     pub fn slide_across(&mut self, out: Ned) {
         let along = Ned {
             north: -out.east,

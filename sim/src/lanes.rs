@@ -1,19 +1,19 @@
 //! Numbers in lanes, as in wide registers.
 //!
 //! Every operation is a plain loop over all lanes, which compiles to one instruction, or to several
-//! on narrower registers. The results have the same bits, because each lane is computed separately,
-//! rounded by IEEE 754 and never fused.
+//! on narrower registers. The results are bit-identical, because each lane is computed separately
+//! and rounded by IEEE 754, and operations are never fused.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// Single-precision numbers in the widest registers: this many wave components are computed side by
-/// side.
+/// Number of single-precision numbers in the widest registers. As many wave components are computed
+/// side by side.
 // Crates such as `wide` choose the registers at compile time; with plain arrays the choice is made
 // at run time.
 pub(crate) const LANES: usize = 16;
 
-/// Components of a row. Each position in the row has its own partial sum over the components, so
-/// that the additions do not wait for each other.
+/// Number of components in a row. Each position in the row has its own partial sum over the
+/// components, so that the additions do not wait for each other.
 pub(crate) const ROW: usize = 4;
 
 /// Rows side by side, or the number of values for each component of a row.

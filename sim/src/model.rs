@@ -441,8 +441,8 @@ fn settings(
     }
 }
 
-/// The rotation by the small angle of half a tick. The series is exact to the last digits and much
-/// faster.
+/// The rotation by the small angle of half a tick. The series is accurate to the last digit and
+/// much faster.
 #[inline]
 fn small_rotation(by_rad: f64) -> Rotation {
     let square = by_rad * by_rad;

@@ -2,7 +2,8 @@
 //!
 //! A boat's step is a long chain of dependent operations, during which the processor mostly waits.
 //! Boats are independent, so eight advance together, one per lane. A lane performs the same IEEE
-//! operations whatever the other lanes and the processor, so results do not depend on the grouping.
+//! operations whatever the other lanes contain and on any processor, so the results do not depend
+//! on the grouping.
 
 use crate::hull::{HullModel, Planar};
 use crate::lanes::{Lanes, where_at_most};
@@ -51,7 +52,8 @@ type Motions<const N: usize> = Motion<Lanes<f64, N>>;
 pub struct Fleet {
     count: usize,
     rows: Vec<Row<MANY>>,
-    /// The boats beyond the full rows, if any.
+    /// The boats beyond the full rows, if there are at most `FEW`. More than that form an
+    /// incomplete row of `rows`.
     last: Option<Row<FEW>>,
     instructions: Instructions,
 }
@@ -78,7 +80,7 @@ impl Fleet {
         }
     }
 
-    /// Uses these instructions, which affect only how fast it runs.
+    /// Selects the instruction set, which affects only the speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
@@ -88,8 +90,8 @@ impl Fleet {
     ///
     /// The equation in `nu_r` does not depend on the heading, so no sine or cosine is needed.
     ///
-    /// `is_uniform` skips the water's own motion if it is the same everywhere; the results are
-    /// equal.
+    /// `is_uniform` states that the water moves in the same way everywhere. The water's own motion
+    /// is then skipped, with equal results.
     ///
     /// # Panics
     /// If the number of forcings differs from the number of boats.

@@ -107,7 +107,7 @@ impl Reporter {
         tell: &mut dyn FnMut(ProgressMessage),
     ) {
         let scenario = contest.scenario();
-        // Report events first: the event of a score appears before the score changes.
+        // Report events first, so that an event appears before the score that it changes.
         let news = self.reported.read(contest.events()).iter();
         news.for_each(|logged| tell(ProgressMessage::Event(EventOutcome::new(scenario, logged))));
         let teams = scenario.teams.iter().map(|team| team.name.clone());

@@ -117,7 +117,8 @@ impl Radio {
 
     fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = TimedNoise>) -> Radio {
         let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
-        // Jitter is rarely that long, and late messages are overtaken anyway.
+        // Reserve space for messages without jitter: long jitter is rare, and late messages are
+        // overtaken anyway.
         let usual = decisions(link.delay_s);
         let line = |_: &TimedNoise| Line {
             is_bad: false,

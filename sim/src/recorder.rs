@@ -29,8 +29,8 @@ pub struct GameRecorder {
 }
 
 impl GameRecorder {
-    /// A recorder to a new file, for a networked game with this name and pace, played by a program
-    /// built from this commit.
+    /// A recorder that writes a new file, for a networked game with this name and pace, played by a
+    /// program built from this commit.
     pub fn on_network(file: NewFile, game: &str, pace: &str, commit: &str) -> GameRecorder {
         let path = file.path().to_owned();
         let [game, pace, commit] = [game, pace, commit].map(str::to_owned);
@@ -44,7 +44,7 @@ impl GameRecorder {
         }
     }
 
-    /// A recorder to a new file, for a game in this process.
+    /// A recorder that writes a new file, for a game in this process.
     pub fn in_process(file: NewFile, game: &str, commit: &str) -> GameRecorder {
         let recorder = GameRecorder::on_network(file, game, "in process", commit);
         GameRecorder {

@@ -18,7 +18,7 @@ pub struct ThrusterModel {
     /// Settings at full ahead and full astern.
     ahead: f64,
     astern: f64,
-    /// Thrust at full ahead and full astern, N.
+    /// Thrust at full ahead, N.
     pub newton_max: f64,
     /// Thrust at full astern (negative), N.
     pub newton_min: f64,
@@ -192,7 +192,7 @@ impl ThrusterModel {
         let most = self.ahead * flaws.saturation;
         let arrived = state.pass(settings);
         let factors = flaws.thrust_factors(state, water_above_m);
-        // Power drawn from the battery, and force on the hull.
+        // Thrust fractions that load the battery, and thrusts on the hull, N.
         let mut taken = [0.0; 2];
         let mut given = [[0.0; 3]; 2];
         for (side, shaft) in shafts.into_iter().enumerate() {

@@ -24,7 +24,7 @@ use scenario::{Boat, Scenario, Source};
 // Far above the speed of any boat, and far below the overflow of squares.
 const ABSURD_M_S: f64 = 1_000.0;
 
-/// How far beyond the radius Pyquaticus sets boats back, m.
+/// Distance beyond the radius to which Pyquaticus sets boats back, m.
 const POINT_BOAT_SPARE_M: f64 = 0.1;
 
 /// Boats in water.
@@ -341,15 +341,16 @@ impl World {
             .truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
-    /// Passes boats within `close_m` of any shape to rapier. Slower, with the same bytes.
+    /// Passes boats within `close_m` of any shape to rapier. This is slower but gives the same
+    /// bytes.
     #[doc(hidden)]
     pub fn widen_contact(&mut self, close_m: f64) {
         self.model.contact.widen(close_m);
         self.find_pairs();
     }
 
-    /// Computes sea and motion with these instructions instead of the machine's fastest, with the
-    /// same bytes.
+    /// Computes sea and motion with these instructions instead of the machine's fastest. The
+    /// results have the same bytes.
     #[doc(hidden)]
     pub fn set_instructions(&mut self, instructions: Instructions) {
         self.model.sea.set_instructions(instructions);

@@ -91,8 +91,9 @@ fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
 #[test]
 fn whatever_water_a_hull_carries_along_it_stays_stable_in_a_gale() {
     // Added mass of three times the boat's own mass or moment of inertia, in each direction and in
-    // all. Applied as a force computed from the last acceleration, it would already diverge at one.
-    // Waves may carry a boat along, but no faster than the crests of a gale.
+    // all. Applied as a force computed from the last acceleration, it would diverge even if it only
+    // equalled the boat's own. Waves may carry a boat along, but no faster than the crests of a
+    // gale.
     for (surge, sway, yaw) in [
         (3.0, 1.0, 1.0),
         (0.1, 3.0, 1.0),

@@ -1,8 +1,8 @@
 //! Heap allocations of a step (none unless hulls are close, and then none that persist) and of a
 //! decision with radio links and limits on sharing (none once queues have grown).
 //!
-//! `stats_alloc` counts them: it has a hundred lines, is safe to use, and saves us an `unsafe`
-//! allocator of our own. It counts the whole process, so this file has a single test.
+//! `stats_alloc` counts them: it has a hundred lines, is safe to use, and saves us from writing an
+//! `unsafe` allocator. It counts the whole process, so this file has a single test.
 
 mod common;
 

@@ -11,7 +11,7 @@ use rules::event::{EventCursor, Logged};
 use scenario::{Scenario, StartPosition};
 use sim::{Contest, RestoreError, World};
 
-/// Sends orders for a lively game, which depend only on time and vehicle, and plays a decision.
+/// Makes the game lively with orders that depend only on time and vehicle, and plays a decision.
 fn play(contest: &mut Contest) {
     contest.pictures();
     let middle = contest.scenario().field.middle();

@@ -247,7 +247,7 @@ fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
     assert!(real.distance(Ned::from_xy(65.0, 40.0)) < 1e-9, "{real:?}");
     assert!(other.distance(Ned::from_xy(58.0, 40.0)) > 1.0, "{other:?}");
     assert!(gap_m(contest.world(), &scenario, 0, 1) > -0.05);
-    // A real boat suddenly reported on top of a simulated one must not throw it out of the sea.
+    // A real boat suddenly reported on top of a simulated one must not throw the latter far away.
     report(&mut contest, nav(other.east, other.north, 45.0, 0.0));
     advance(&mut contest, 10);
     let thrown_m = contest.world().state().boats[1].pose.at.distance(other);

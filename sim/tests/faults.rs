@@ -42,7 +42,7 @@ fn play_to(contest: &mut Contest, until_s: f64) {
                     },
                     at,
                 )
-                .expect("the fault is valid");
+                .expect("the order is valid");
         }
         contest.advance();
     }
@@ -58,7 +58,7 @@ fn errors(contest: &Contest, vehicle: VehicleId) -> (f64, f64) {
     let nav = contest
         .world()
         .reading(vehicle)
-        .expect("the fault is valid")
+        .expect("the boat has sensors")
         .nav;
     (
         nav.at().distance(pose.at),

@@ -170,7 +170,8 @@ fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
     let mut differ = 0;
     for (k, (plain, other)) in plain.iter().zip(&other).enumerate() {
         assert_eq!((plain.1, plain.0[1]), (other.1, other.0[1]), "decision {k}");
-        // Until the first order after the silence arrives, the last one before it stays in force.
+        // Until the first order after the silence arrives, the last one before the silence is in
+        // force.
         let is_of_silence = |order: &Order| silence.clone().any(|k| labelled(k) == *order);
         if is_of_silence(&plain.0[0]) {
             differ += 1;

@@ -68,9 +68,9 @@ fn assert_near(what: &str, got: [f64; 4], want: [f64; 4], within: f64) {
 
 #[test]
 fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
-    // Full ahead from (40, 70) to the north: when it leaves, how long it remains outside, and when
-    // it is untagged, with checks at every step of 0.1 s and, as in the competition, at every
-    // tenth.
+    // Full ahead from (40, 70) to the north: when the boat leaves the field, how long it stays
+    // outside, and when it is untagged. Checks are made at every step of 0.1 s or, as in the
+    // competition, at every tenth step.
     for (boat, speed_m_s, looks_s, want_s) in [
         ("heron", 2.0, 0.0, [8.9, 8.8, 28.6]),
         ("heron", 2.0, 1.0, [9.0, 9.0, 29.0]),
@@ -122,7 +122,7 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
 
 #[test]
 fn tags_succeed_at_random_with_the_seed_of_the_game() {
-    // Red attempts a tag at every second, with a cooldown of 2 s.
+    // Red can attempt a tag every second, with a cooldown of 2 s.
     let mut scenario = game("mctf_2026", "surveyor", (145.0, 15.0, 0.0));
     assert!(!scenario.is_random());
     scenario.rules.tag_probability = 0.25;
@@ -164,8 +164,8 @@ fn tags_succeed_at_random_with_the_seed_of_the_game() {
 
 #[test]
 fn a_point_boat_slides_along_the_keepout_circle_as_in_pyquaticus() {
-    // Start and constant ordered heading; the first step at which it is set back, with x, y, speed
-    // and heading then; and x, y at 30 s, long after it has passed the flag.
+    // Start and constant ordered heading; the first step at which the boat is set back, with x, y,
+    // speed and heading then; and x, y at 30 s, long after the boat has passed the flag.
     type Case = (&'static str, (f64, f64, f64), f64, [f64; 4], [f64; 2]);
     let cases: [Case; 6] = [
         (

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 const STOPPED_S: f64 = 2.0;
 /// Maximum distance to that obstacle from the estimated position, m: a large receiver error.
 const ERROR_MAX_M: f64 = 10.0;
-/// Distance within which another boat may be what stops this one, m.
+/// Distance within which another boat may be the cause of the stop, m.
 const BOAT_M: f64 = 4.0;
 /// How long the boat then backs off, s, and its speed, m/s: it turns around and gains 5 m.
 const BACKS_OFF_S: f64 = 8.0;

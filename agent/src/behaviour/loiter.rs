@@ -31,7 +31,7 @@ impl LoiterBehaviour {
         }
     }
 
-    /// Chooses the first corner and the direction, from the corners ahead in each direction.
+    /// Chooses the direction of travel and the first corner to steer for.
     fn choose(&mut self, situation: &Situation) {
         let centre = centre_of(&self.corners);
         let out = situation.at - centre;
@@ -115,7 +115,8 @@ impl BehaviourLogic for LoiterBehaviour {
     }
 }
 
-/// The corners of a shape, clockwise; `None` if a place in it is unknown.
+/// Replaces `corners` with the corners of a shape, clockwise, or with none if a place in it is
+/// unknown.
 pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec<Ned>) {
     corners.clear();
     match shape {

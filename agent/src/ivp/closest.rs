@@ -107,8 +107,8 @@ impl Closest {
             .all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
             && lag.is_none_or(Lag::is_sound);
-        // Incoming pictures are validated, so this is a bug: tests stop, and a boat on the water
-        // continues without this function.
+        // Incoming pictures are validated, so an invalid number is a bug: tests stop, and a boat on
+        // the water continues without this function.
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
@@ -216,9 +216,9 @@ pub(super) struct Ways {
     last: Vector,
     from_first: [Vector; 2],
     from_last: [Vector; 2],
-    /// For the middle path: the contact's position after the turn, its motion during the turn and
-    /// the fraction of that motion after which it is nearest, its velocity after the turn, and the
-    /// time after the turn at which it is nearest.
+    /// For the middle path: the contact's position after the turn; its motion during the turn; the
+    /// fraction of that motion after which it is nearest; its velocity after the turn; and the time
+    /// after the turn at which it is nearest.
     middle: Vector,
     past: Vector,
     share: f32,

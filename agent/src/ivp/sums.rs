@@ -90,7 +90,8 @@ impl Sums {
         }
     }
 
-    /// Adds a formula, next to one with the same distances, if any, to reuse them.
+    /// Adds a formula. Formulas with the same distances are adjacent, so that the distances are
+    /// computed only once.
     fn add_field(&mut self, weight: Weight, mut field: Field) {
         let mut place = self.fields.len();
         if let Field::Closest(ready) = &mut field {

@@ -120,8 +120,8 @@ impl Talk {
         for to in &mut self.outgoing {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
-            // Keep the messages, because a repeated picture is answered with the same messages, so
-            // that lost messages are sent again.
+            // Keep the messages: the answer to a repeated picture repeats them, in case they were
+            // lost.
             to.last = (!words.is_empty()).then_some(Say {
                 stamp: Stamp {
                     version: Say::VERSION,

@@ -70,8 +70,8 @@ impl TeamInbox {
             return;
         };
         for word in say.words {
-            // Messages identify boats, not processes: the name stays when a different process takes
-            // over a boat.
+            // Messages identify boats, not processes: a boat keeps its identifier when a different
+            // process takes it over.
             let sender = self.senders.get_mut(word.vehicle.index());
             let Some(sender) = sender.filter(|sender| sender.is_mate && sender.team == team) else {
                 self.refusals.count(Refusal::NotYours);

@@ -104,7 +104,7 @@ impl DriftEstimate {
             east - gain.east * of_starboard.east,
             both - gain.north * of_starboard.east,
         );
-        // In a turn, the slide causes the innovation.
+        // In a turn, part of the innovation is due to the error of the slide.
         let own_m2_s2 =
             (surprise_m_s * surprise_m_s - error_m_s * error_m_s).max(NOISE_M_S * NOISE_M_S);
         self.square_m2_s2 += (step_s / SPREAD_TIME_S).min(1.0) * (own_m2_s2 - self.square_m2_s2);

@@ -41,8 +41,8 @@ enum SpeedReference {
     Ground,
     /// Speed through the water, as for point boats.
     Water {
-        /// For a boat that steers by differential thrust, with thrust proportional to the ordered
-        /// speed: how much lower the order must be for full deceleration, m/s.
+        /// For a boat whose thrust is proportional to the ordered speed: how far below the boat's
+        /// speed the order must be for full deceleration, m/s.
         brakes_by_m_s: Option<f64>,
         /// How much more speed to order in a turn, m/s.
         steers_by_m_s: f64,

@@ -128,7 +128,7 @@ impl GameModel {
             .expect(HAS_ALL)
     }
 
-    /// The centre of the untagging circle for a boat at `at`.
+    /// The centre of the untag circle for a boat at `at`.
     pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
         self.rules
             .untag_centre(&self.field, self.team, at)

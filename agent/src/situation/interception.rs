@@ -90,8 +90,8 @@ pub(super) fn assign(
     pairs
 }
 
-/// Time until both can be at the same place, s. If the intruder outruns the boat, the time until
-/// the boat reaches the intruder's current position.
+/// Time until both can be at the same place, s. If the intruder outruns the boat, twice the time
+/// that the boat needs to reach the intruder's current position.
 fn time_to_meet_s(interceptor: &Interceptor, intruder: &Intruder) -> f64 {
     let line = intruder.at - interceptor.at;
     meeting_time_s(line, intruder.velocity, interceptor.speed_m_s)

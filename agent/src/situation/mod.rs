@@ -30,10 +30,10 @@ use turn_estimate::turning_on;
 
 /// Distance to an unknown object, m.
 const NOWHERE_M: f64 = 1e9;
-/// A boat that is tagged within this fraction of the untagging radius from the centre must first
-/// leave its untagging place.
+/// A boat that is tagged within this fraction of the untag radius from the centre must first leave
+/// its untag place.
 const WELL_INSIDE: f64 = 0.5;
-/// Fraction of that radius beyond which the boat counts as having left.
+/// Multiple of that radius beyond which the boat counts as having left.
 const WELL_OUTSIDE: f64 = 1.2;
 
 /// Another boat.
@@ -114,8 +114,8 @@ pub(crate) struct Situation {
     /// The interception pairs, computed on first use in a decision.
     interception: OnceCell<Arc<[Pair]>>,
     interception_before: Arc<[Pair]>,
-    /// Whether the boat was tagged inside its untagging place and must leave it before it can
-    /// return to it.
+    /// Whether the boat was tagged inside its untag place and must leave it before it can return to
+    /// it.
     leaving: bool,
 }
 

@@ -98,8 +98,8 @@ fn key_of(variable: &Variable) -> u64 {
         Kind::Number => "number".to_owned(),
         Kind::Text(values) => values.join(","),
     };
-    // A hash of name and kind: two strategies of one team need not list the same variables, and
-    // words have a fixed size on the wire.
+    // A hash of name and kind: two strategies of one team need not list the same variables, and a
+    // hash has a fixed size on the wire.
     xxh3_64(format!("{} {kind}", variable.name).as_bytes())
 }
 

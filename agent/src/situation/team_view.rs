@@ -195,9 +195,9 @@ impl TeamView {
             .find(|boat| boat.vehicle == vehicle)
     }
 
-    /// The current position of a boat of the team, and its velocity along its axes. Fixes may drop
-    /// out and links may fall silent for seconds, but headings do not drop out; meanwhile the boat
-    /// has left its last position.
+    /// The current position of a boat of the team, and its velocity along its axes. While fixes
+    /// drop out or a link is silent, the boat moves on, so its position is dead-reckoned with its
+    /// headings, which do not drop out.
     fn reckoned(&mut self, boat: &OwnBoat, now: SimTime) -> (Ned, Body) {
         let i = boat.vehicle.index();
         let fix = boat.fix_ns;

@@ -257,7 +257,7 @@ fn a_boat_in_the_way_is_passed_and_one_astern_changes_nothing() {
 fn obstacles_are_passed() {
     let behaviours = "[behaviour.go]\nkind = 'waypoint'\npoints = [[0, 39]]\nspeed_m_s = 2\nweight = 50\n\
         [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
-    // The field's obstacle is a disc of 2 m at (0, 30).
+    // The field's obstacle is a disc with a radius of 2 m at (0, 30).
     let scene = alone(0.0, Boat::at(0.0, 14.0).going(0.0, 2.0));
     let course_rad = steered(&mut helm(&without_safety(behaviours)), &scene)
         .0
@@ -274,7 +274,7 @@ fn a_boat_that_an_obstacle_stops_unexpectedly_backs_off() {
     let program = "[behaviour.go]\nkind = 'waypoint'\npoints = [[60, 34]]\nweight = 100\n\
         [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
     let mut helm = helm(&without_safety(program));
-    // By its receiver it passes north of the disc of 2 m at (0, 30). It stands still nevertheless.
+    // According to its receiver, the boat passes north of the disc, but it stands still.
     let stopped = |tenth: u32| {
         let at_s = 0.1 * f64::from(tenth);
         alone(at_s, Boat::at(-2.9, 34.0).going(90.0, 0.0))

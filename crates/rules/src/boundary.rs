@@ -1,4 +1,4 @@
-//! The boundary: boats that leave the field are tagged and lose their flags.
+//! The boundary: a boat that leaves the field loses its flag and, with `boundary_tags`, is tagged.
 
 use super::{Referee, Standing};
 use crate::event::{Event, TagCause};

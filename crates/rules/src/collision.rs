@@ -6,7 +6,7 @@ use primitives::id::VehicleId;
 use primitives::near::Pair;
 
 impl Referee {
-    /// Records new collisions, once per encounter. Boats out of play are also solid.
+    /// Records new collisions, once per encounter. Boats out of play count, too.
     pub(super) fn watch_collisions(
         &self,
         standing: &mut Standing,
@@ -16,8 +16,7 @@ impl Referee {
     ) {
         let reach_squared = self.rules.collision_distance_m * self.rules.collision_distance_m;
         notes.touching.clear();
-        // Both lists have the same order, so one pass over the old list finds every pair of the new
-        // one.
+        // Both lists have the same order, so one pass over the old list is enough.
         let mut before = standing.touching.iter().peekable();
         for pair in near
             .iter()

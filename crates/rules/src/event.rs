@@ -1,4 +1,4 @@
-//! Events of a game, in the past tense.
+//! Events of a game, named in the past tense.
 
 use primitives::id::{FlagId, TeamId, VehicleId};
 use primitives::time::SimTime;
@@ -95,7 +95,7 @@ pub enum Event {
     AgentBack(VehicleId),
     /// A boat's state became non-finite: it stays at its last position, out of play.
     Quarantined(VehicleId),
-    /// The position of a real boat is no longer known: it must hold.
+    /// The position of a real boat is no longer known: the boat must hold.
     NavLost(VehicleId),
     /// The position of a real boat is known again.
     NavBack(VehicleId),
@@ -115,7 +115,7 @@ pub enum Event {
 }
 
 impl Event {
-    /// The affected boat: the first in a collision; `None` at the end of a game.
+    /// The affected boat; the first one in a collision. `None` for events that affect all boats.
     pub fn vehicle(self) -> Option<VehicleId> {
         match self {
             Event::Grabbed { vehicle, .. }
@@ -225,7 +225,7 @@ impl From<Logged> for EventRecord {
 }
 
 impl EventRecord {
-    /// Decodes the event, if kind and numbers are known.
+    /// Decodes the event; `None` if the kind or a number is invalid.
     pub fn logged(&self) -> Option<Logged> {
         let vehicle = u16::try_from(self.subject).ok().map(VehicleId);
         let other = u16::try_from(self.object).ok().map(VehicleId);

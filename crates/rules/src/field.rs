@@ -3,7 +3,7 @@
 //! ```text
 //!        corner 1 ──────────────── corner 2        `along` runs from the first team's end to the
 //!           │  first  :  second  │                 second's; `across` is a quarter turn to port of it.
-//!   across ▲│    ⚑    :    ⚑     │                 Flags stand on the long middle line, `flag_inset_m`
+//!   across ▲│    ⚑    :    ⚑     │                 Flags lie on the long middle line, `flag_inset_m`
 //!          ││  team   :   team   │                 from the ends; the scrimmage line halves the field.
 //!        corner 0 ──────────────── corner 3
 //!              along ▶
@@ -94,7 +94,7 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
-    /// Whether the obstacle contains a place.
+    /// Whether the obstacle contains a position.
     pub fn contains(&self, at: Ned) -> bool {
         match self {
             Obstacle::Circle { centre, radius_m } => centre.distance(at) < *radius_m,
@@ -120,8 +120,8 @@ pub fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
         .zip(corners.iter().copied().cycle().skip(1))
 }
 
-/// Whether a polygon contains a place: a ray from the place crosses its outline an odd number of
-/// times.
+/// Whether a polygon contains a position: a ray from the position crosses the outline an odd number
+/// of times.
 pub fn is_within(corners: &[Ned], at: Ned) -> bool {
     let crossed = |(a, b): &(Ned, Ned)| {
         (a.east > at.east) != (b.east > at.east)

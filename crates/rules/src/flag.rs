@@ -10,8 +10,7 @@ impl Referee {
     /// two flags.
     ///
     /// A boat claims the nearest available flag; [`Resolution`] decides between several boats at
-    /// one flag. A flag is available only if it has been home since the last check, except with
-    /// `InTurn`.
+    /// one flag. Except with `InTurn`, a flag that came home at this check is not yet available.
     pub(super) fn grab(
         &self,
         standing: &mut Standing,

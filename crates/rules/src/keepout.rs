@@ -42,7 +42,7 @@ impl Referee {
         }
     }
 
-    /// The homes of `team`'s flags that are home.
+    /// The home positions of `team`'s flags that no boat carries.
     #[inline]
     fn own_flags_home(&self, standing: &Standing, team: TeamId) -> impl Iterator<Item = Ned> {
         self.field

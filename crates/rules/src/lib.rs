@@ -82,7 +82,7 @@ pub struct Rules {
     /// Which of several intruders within reach is tagged.
     #[schemars(extend("default" = "nearest"))]
     pub tag_choice: TagChoice,
-    /// Probability that a tag succeeds. A failed one also starts the cooldown.
+    /// Probability that a tag succeeds. A failed attempt also starts the cooldown.
     #[serde(default = "certain")]
     #[schemars(!default, range(min = 0, max = 1), extend("default" = 1))]
     pub tag_probability: f64,
@@ -136,7 +136,7 @@ pub struct Rules {
     #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
     #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,
-    /// Time out of action of one boat per team, s; 0: none.
+    /// Time for which each team is one boat short, s; 0: none.
     #[schemars(rename = "power_play_s", with = "f64", range(min = 0, max = 86400))]
     #[schemars(extend("x-field" = "power_play", "default" = 0))]
     pub power_play: SimTime,
@@ -212,7 +212,7 @@ pub enum UntagOn {
     /// Being inside.
     #[serde(alias = "Inside")]
     Inside,
-    /// Nothing: it is out for the rest of the game.
+    /// Nothing: the boat stays tagged for the rest of the game.
     Never,
 }
 
@@ -223,7 +223,7 @@ pub enum TagChoice {
     /// The nearest.
     #[serde(alias = "Nearest")]
     Nearest,
-    /// The first in the game's list.
+    /// The first in the scenario's order.
     #[serde(alias = "First")]
     First,
     /// The nearest with a flag, or else the nearest.

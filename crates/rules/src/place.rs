@@ -1,7 +1,7 @@
 //! Capture and untag places.
 //!
-//! The referee judges by these functions, and agents steer by them. They depend only on the field,
-//! the rules and a position.
+//! The referee uses these functions to judge, and agents use them to steer. They depend only on the
+//! field, the rules and a position.
 
 use super::{CaptureAt, Rules, SideJudged, UntagAt};
 use crate::field::Field;
@@ -27,8 +27,8 @@ impl Rules {
         }
     }
 
-    /// Target of a carrier of `team` at `at`: the nearest capture place or, if all of its own side
-    /// counts, its nearest own flag. None on a field without flags or corners of that team.
+    /// Target of a carrier of `team` at `at`: the nearest capture place or, with `OwnSide`, its
+    /// nearest own flag. `None` on a field without flags or corners of that team.
     pub fn capture_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.capture_at {
             CaptureAt::OwnFlag | CaptureAt::OwnSide => field.nearest_own_flag(team, at),
@@ -47,8 +47,8 @@ impl Rules {
         }
     }
 
-    /// Target of a tagged boat of `team` at `at`: the nearest untag place. None on a field without
-    /// flags or corners of that team.
+    /// Target of a tagged boat of `team` at `at`: the nearest untag place. `None` on a field
+    /// without flags or corners of that team.
     pub fn untag_place(&self, field: &Field, team: TeamId, at: Ned) -> Option<Ned> {
         match self.untag_at {
             UntagAt::OwnFlag => field.nearest_own_flag(team, at),

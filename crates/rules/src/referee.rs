@@ -11,7 +11,7 @@ use primitives::reseed::TimedNoise;
 use primitives::stream::Stream;
 use primitives::time::SimTime;
 
-/// The constant referee of a game. Only [`Standing`] changes.
+/// A game's referee. It never changes; only the [`Standing`] does.
 #[derive(Clone, Debug)]
 pub struct Referee {
     /// The rules of the game.
@@ -50,7 +50,7 @@ pub struct Look<'a> {
     /// Requests by vehicle index, if the rules require them:
     /// [`Acting::OnRequest`](super::Acting::OnRequest).
     pub asks: &'a [Asks],
-    /// All pairs within [`Rules::reach_m`], possibly more, in the order of
+    /// All pairs within [`Rules::reach_m`], and possibly others, in the order of
     /// [`primitives::near::Near`].
     pub near: &'a [Pair],
     /// Simulated time, later than at the last check.
@@ -67,11 +67,12 @@ impl Referee {
 
     /// Checks all boats and appends events.
     ///
-    /// The order of the list below is the order of resolution. Every phase is judged by the
-    /// standing at its start, whatever the order of the boats, so mirrored teams get mirrored
-    /// results. Results of this check take effect at the next one: a flag brought home cannot be
-    /// grabbed yet, a grabbed flag cannot be captured yet, a tagged boat cannot be untagged yet.
-    /// [`Resolution::InTurn`] uses a different order, for comparison with Pyquaticus.
+    /// The phases are resolved in the order in which this function calls them. Each phase is judged
+    /// by the standing at its start. The order of the boats therefore does not matter, and mirrored
+    /// teams get mirrored results. Results of this check take effect at the next one: a flag
+    /// brought home cannot be grabbed yet, a grabbed flag cannot be captured yet, and a tagged boat
+    /// cannot be untagged yet. [`Resolution::InTurn`] uses a different order, for comparison with
+    /// Pyquaticus.
     ///
     /// Nothing happens after the end of the game.
     pub fn advance(
@@ -130,7 +131,7 @@ impl Referee {
     }
 }
 
-/// Whether a periodic check is due; always, with a period of 0.
+/// Whether a periodic check is due at `now`. With a period of 0, it always is.
 fn is_due(now: SimTime, period: SimTime) -> bool {
     period <= SimTime::ZERO || now.0 % period.0 == 0
 }

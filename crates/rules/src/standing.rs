@@ -31,7 +31,7 @@ pub struct VehicleStanding {
     pub in_play: bool,
     /// Whether the boat is tagged.
     pub tagged: bool,
-    /// Time of its last tag.
+    /// Time at which the boat was last tagged.
     pub tagged_at: SimTime,
     /// The flag that the boat carries.
     pub carrying: Option<FlagId>,

@@ -46,8 +46,8 @@ impl Referee {
             return;
         }
         let noise = self.tag_noise.at(standing.now);
-        // Time in nanoseconds plus a boat's index is different for every attempt: checks are at
-        // least 1 ms apart, and a boat makes one attempt per check.
+        // Time in nanoseconds plus a boat's index differs for every attempt: checks are at least 1
+        // ms apart, and a boat makes one attempt per check.
         let first = standing.now.0 as u64;
         let fails = |claim: &Claim| {
             noise.unit(first.wrapping_add(claim.by.into())) >= self.rules.tag_probability
@@ -71,7 +71,7 @@ impl Referee {
         }
     }
 
-    /// Whether `tagger` may tag `target`, apart from their distance.
+    /// Whether `tagger` may tag `target`, ignoring the distance between them.
     ///
     /// Both must be on the tagger's own side, and the target not on *its* own side. The scrimmage
     /// line belongs to both sides: a boat on it is safe but can tag, so no boat is ever both tagger

@@ -5,8 +5,8 @@ use primitives::{Ned, VehicleId};
 use rules::{Asks, Field, Rules};
 
 /// The requests that a team's boats make based on their picture, as with pRangeEvent in the
-/// Aquaticus missions. Every boat that believes that it is in range makes a request, since a
-/// refusal costs nothing.
+/// Aquaticus missions. Every boat that believes it is in range makes a request, since a refusal
+/// costs nothing.
 pub(super) fn asks_of<'a>(
     rules: &Rules,
     field: &'a Field,

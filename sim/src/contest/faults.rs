@@ -15,7 +15,7 @@ pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {
         scenario.rules.time_limit,
     );
     // Faults of sensors and thrusters belong to the world. The seed determines the fault spans
-    // before the game, so snapshots contain none and processes agree.
+    // before the game, so snapshots need not contain them, and all processes agree.
     spans
         .into_iter()
         .filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost))
@@ -33,8 +33,8 @@ impl Contest {
         is_silent(&self.faults[vehicle.index()], self.now())
     }
 
-    /// Starts and ends the agent faults of this tick, each with an event. Boats whose agents die
-    /// then hold.
+    /// Starts and ends the agent faults of this tick, each with an event. Boats whose agents are
+    /// lost hold.
     pub(super) fn begin_and_end_faults(&mut self) {
         let now = self.now();
         let tick = self.scenario.tick;

@@ -1,9 +1,9 @@
 //! A running game: the world, the referee, the orders in force and all events.
 //!
-//! One decision consists of [`Contest::pictures`] to the agents, [`Contest::order`] from them, and
-//! [`Contest::advance`]. The network node and the in-process arena do nothing else, so a game has
-//! the same bytes in both. The world is physics alone; [`Contest::effective_command`] decides what
-//! a boat does in a tick.
+//! In each decision, agents receive [`Contest::pictures`] and reply with [`Contest::order`]; then
+//! [`Contest::advance`] plays the ticks. The network node and the in-process arena do nothing else,
+//! so a game is bit-identical in both. The world is physics alone; [`Contest::effective_command`]
+//! decides what a boat does in a tick.
 
 mod ask;
 mod faults;
@@ -274,7 +274,7 @@ impl Contest {
         }
     }
 
-    /// Applies a recorded input. An input refused in the recording is refused again.
+    /// Applies a recorded input. An input that was refused when it was recorded is refused again.
     pub fn give(&mut self, input: Input) {
         match input {
             Input::Pictured => drop(self.pictures()),
@@ -294,8 +294,8 @@ impl Contest {
             } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
-            // Ticks keep their recorded order among all other inputs: in a replay, the order of
-            // inputs and ticks must not depend on clocks.
+            // Advancing is an input like any other: in a replay, the order of inputs and ticks must
+            // not depend on clocks.
             Input::Played => self.advance(),
         }
     }
@@ -396,7 +396,7 @@ impl Contest {
             );
         }
         for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
-            // A real boat's data are unknown until it reports.
+            // While its agent or link is silent, a boat sends no data.
             if faults::is_silent(&faults[i], now) {
                 continue;
             }
@@ -435,7 +435,7 @@ impl Contest {
         }
     }
 
-    /// Marks a lost agent as back; earlier messages do not arrive. No effect if it was not lost.
+    /// Marks a lost agent as back and cancels orders in transit. No effect if it was not lost.
     pub fn regain_agent(&mut self, vehicle: VehicleId) {
         if std::mem::replace(&mut self.state.agent_lost[vehicle.index()], false) {
             self.note(Input::AgentBack(vehicle));
@@ -511,8 +511,7 @@ impl Contest {
         }
     }
 
-    /// Plays one tick: boats move, the referee acts and boats are set back. Sensors are read before
-    /// decisions.
+    /// Plays one tick: boats move, the referee acts, and boats in a keep-out circle are set back.
     fn step(&mut self) {
         self.update_stations();
         let mut commands = std::mem::take(&mut self.work.commands);
@@ -556,7 +555,7 @@ impl Contest {
             },
             events,
         );
-        // Set boats back after the referee, which would otherwise never see a boat enter the
+        // Set boats back after the referee, which would otherwise never see a boat enter a keep-out
         // circle.
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;

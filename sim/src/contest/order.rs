@@ -18,9 +18,10 @@ const STATION_RADIUS_M: f64 = 2.0;
 const STATION_RETURN_PER_S: f64 = 0.5;
 
 impl Contest {
-    /// Sends an order to a vehicle. It is in force from its arrival until the next arrival or its
-    /// expiry. A real boat receives it over a real link instead of the simulated one. `given_at` is
-    /// the time of the picture that the order answers; a future time counts as the present.
+    /// Sends an order to a vehicle. It is in force from its arrival until the next order arrives or
+    /// it expires. A real boat receives it over a real link instead of the simulated one.
+    /// `given_at` is the time of the picture that the order answers; a future time counts as the
+    /// present.
     ///
     /// # Errors
     /// [`BadOrder`] for invalid numbers; the vehicle then holds.
@@ -76,9 +77,10 @@ impl Contest {
     }
 
     /// A vehicle's effective command: its order in force, as modified by rules and operators. A
-    /// boat driven home gets a course at the speed allowed by the rules; a speed limit also scales
-    /// thrust. A real boat holds while its position or its agent is lost, after its order has
-    /// expired, and after the end of the game: it must be supervised, whatever the rules require.
+    /// boat driven home gets a course home at the speed allowed by the rules; a speed limit also
+    /// scales thrust. A real boat holds while its position or its agent is lost, after its order
+    /// has expired, and after the end of the game: it must be supervised, whatever the rules
+    /// require.
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
         if self.is_stopped(i) {

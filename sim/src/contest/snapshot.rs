@@ -38,11 +38,12 @@ pub enum RestoreError {
 }
 
 impl Contest {
-    /// The changing state as bytes, tagged with the game. A contest of the same game restored from
-    /// them continues bit for bit. Inputs kept for [`Contest::take_inputs`] are not included.
+    /// The changing state as bytes, tagged with the game. A contest of the same game that is
+    /// restored from them continues identically, bit for bit. Inputs kept for
+    /// [`Contest::take_inputs`] are not included.
     pub fn snapshot(&self) -> Vec<u8> {
-        // Sea, faults and contact engine are omitted: they are functions of scenario, seed and
-        // time.
+        // Sea and faults are omitted because they are functions of scenario, seed and time. The
+        // contact engine has no state.
         let (radio, sightings) = self.messages();
         let body = bytes(&(self.world.state(), &self.state, radio, sightings));
         let mut snapshot = MAGIC.to_vec();

@@ -1,4 +1,5 @@
-//! Operator commands to the game. They precede all other messages, and no stop is ever lost.
+//! Operator commands to the game. They are handled before all other messages, and no stop is ever
+//! lost.
 
 use bus::Watched;
 use messages::Control;

@@ -48,8 +48,7 @@ mod tests {
     use messages::{Message, Role, Stamp};
     use primitives::VehicleId;
 
-    /// A gateway with ticket 7 for the given boats out of the real boats blue one (0) and red one
-    /// (2).
+    /// A gateway with ticket 7 for some of the real boats, which are blue one (0) and red one (2).
     fn gateways(vehicles: &[&str]) -> Membership {
         let mut gateways = membership(Role::Gateway, true);
         gateways.join(&request(Role::Gateway, "a", vehicles), 7, NOW);

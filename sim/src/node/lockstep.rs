@@ -29,7 +29,7 @@ pub(super) fn play(
             gather(server, tell)?;
             due = clock::now();
         }
-        // Some agents have not replied; later replies do not count as late.
+        // The game was stopped before all agents replied; their later replies do not count as late.
         if server.is_stopped() {
             break;
         }
@@ -42,7 +42,7 @@ pub(super) fn play(
     Ok(())
 }
 
-/// Waits until a decision's time has passed at the speed limit. Returns the due time.
+/// Waits until a decision has lasted as long as the speed limit requires. Returns the due time.
 fn keep_speed(
     server: &mut GameServer<'_>,
     due: Instant,
@@ -53,7 +53,7 @@ fn keep_speed(
     };
     let decision_s = server.contest.scenario().decision().as_s();
     let now = clock::now();
-    // Lost time is not recovered.
+    // Lost time is not made up for.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);
     // The speed may change, and the game may be paused, during the wait.
     while clock::now() < due
@@ -84,7 +84,8 @@ fn gather(
     while !server.agents.all_answered(tick) && !server.is_stopped() {
         server.listen(Duration::from_millis(50));
         if server.time.worked.saturating_sub(since) >= patience {
-            // Drop all that have not replied at once: the next decision waits for none of them.
+            // Drop all agents that have not replied, so that the next decision waits for none of
+            // them.
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
             server.send_pictures()?;

@@ -1,5 +1,6 @@
 //! Membership of a game: agents that decide for vehicles, and gateways that connect real boats,
 //! with one list per role.
+//!
 //! A node that joins gets a ticket and sends it with every message. This module uses neither
 //! network nor clock: the server passes in messages and acts on the results.
 
@@ -193,8 +194,8 @@ impl Membership {
     /// Removes a node. Returns its abandoned vehicles, to which it may return unless a different
     /// node takes them.
     pub fn gone(&mut self, node: &str) -> Vec<VehicleId> {
-        // Identified by the link that zenoh reports as lost, not by a liveliness token, which
-        // anyone could present in another node's name.
+        // The node is identified by the link that zenoh reports as lost, not by a liveliness token,
+        // which anyone could present in another node's name.
         self.lose(|holder| holder.node == node)
     }
 

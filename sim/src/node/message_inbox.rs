@@ -44,7 +44,7 @@ impl Incoming {
     }
 }
 
-/// The sender of a message, by which space is shared.
+/// The sender of a message. Each sender has its own share of the space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Sender {
     /// The node with this ticket.
@@ -68,7 +68,7 @@ impl Sender {
             // Space per topic or link would not need tickets, but anyone can publish on any number
             // of topics over any number of links.
             Sender::Member(_) => 128,
-            // Includes every byte between a gateway and its boat.
+            // Reports include every byte between a gateway and its boat.
             Sender::Reporting(_) => 2048,
             Sender::Joining => 64,
             Sender::Recorded(_) => 2048,

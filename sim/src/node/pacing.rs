@@ -42,7 +42,8 @@ impl Pacing {
         match control {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
             Control::Resume => (self.is_paused, self.steps) = (false, 0),
-            // Count them, because an operator may press the key faster than decisions are played.
+            // Count the steps, because an operator may press the key faster than decisions are
+            // played.
             Control::Step if self.is_paused => self.steps = self.steps.saturating_add(1),
             // Real boats have only one speed.
             Control::Speed(Some(speed)) if Control::SPEEDS.contains(&speed) && !self.is_real => {

@@ -16,7 +16,7 @@ pub(super) fn play(
         server.record();
         server.send_pictures()?;
         server.send_frame()?;
-        // Listens until the next tick is due, and at least once.
+        // Listens until the next decision is due, and at least once.
         loop {
             server.listen(due.saturating_duration_since(clock::now()));
             if clock::now() >= due {
@@ -30,12 +30,12 @@ pub(super) fn play(
         }
         let late = clock::since(due);
         if late > period {
-            // Lost time is not recovered: the game runs slower than requested and reports it.
+            // Lost time is not made up for: the game runs slower than requested and reports it.
             server.overruns += 1;
             due = clock::now();
         }
         due += period;
-        // In real time, silence is counted from an agent's last message.
+        // In real time, silence is measured from an agent's last message.
         server.lose_silent();
         server.contest.advance();
         server.pacing.played();

@@ -412,7 +412,7 @@ impl<'w> GameServer<'w> {
         }
     }
 
-    /// Whether the game should end early, for good or to be played again.
+    /// Whether the game should end early, for good or for a restart.
     pub(super) fn is_stopped(&self) -> bool {
         self.next.is_some() || self.stop.load(Ordering::Relaxed)
     }
@@ -529,7 +529,7 @@ impl<'w> GameServer<'w> {
         self.send_run(Phase::Over, 0.0)?;
         let start = clock::now();
         let mut sent = start;
-        // Any message may be lost. An agent that misses this one reports a lost sim; one that
+        // Any message may be lost. An agent that misses this one reports a lost sim; an agent that
         // leaves has received it. The wait is limited, because an agent may hang.
         while !self.agents.is_empty() && clock::since(start) < SHUTDOWN {
             self.listen(Duration::from_millis(20));

@@ -1,7 +1,7 @@
 //! Sends fewer pictures over a link that cannot carry all of them.
 //!
 //! QUIC queues the datagrams that its congestion window does not admit, up to a mebibyte of them.
-//! Over a link slower than the sim, orders would reply to ever older pictures. As in LEDBAT (RFC
+//! Over a link slower than the sim, orders would answer older and older pictures. As in LEDBAT (RFC
 //! 6817), the time in queues is the round-trip time beyond its recent minimum.
 
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ const QUEUED_MAX: Duration = Duration::from_millis(300);
 /// Maximum number of pictures skipped in a row: an order lives for a second, and the next picture
 /// may be lost.
 const SKIPPED_MAX: u32 = 2;
-/// The minimum covers one to two windows.
+/// Window of the minimum round trip; the minimum covers one to two windows.
 const WINDOW: Duration = Duration::from_secs(10);
 /// Time without a reply after which a team counts as absent, not slow.
 const ABSENT: Duration = Duration::from_secs(2);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 /// A cycle of the sim that takes longer counts as an interruption.
 const TURN_MAX: Duration = Duration::from_secs(1);
-/// How long lost links have to return after an interruption, during which patience does not count.
+/// Time after an interruption for lost links to return. It does not count against other nodes.
 /// zenoh waits at most four seconds between two attempts to connect.
 const RECOVERY: Duration = Duration::from_secs(10);
 

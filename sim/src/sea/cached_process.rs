@@ -1,6 +1,6 @@
 //! A Gauss-Markov process with a cached window of grid points and linear interpolation.
 //!
-//! Outside the window, points are recomputed: slower, but with the same bits.
+//! Points outside the window are recomputed, which is slower but gives the same bits.
 
 use super::gauss_markov::{GaussMarkov, Pair, Trail};
 
@@ -53,8 +53,8 @@ impl CachedProcess {
 
     /// The pair of processes at a place, each with mean 0 and variance 1.
     ///
-    /// Linear interpolation reduces the variance to (1−w)² + w² + 2 w (1−w) ρ. Dividing by its
-    /// square root compensates for that.
+    /// Linear interpolation reduces the variance to (1−w)² + w² + 2 w (1−w) ρ. Without dividing by
+    /// its square root, gusts would be weaker between grid points.
     #[inline]
     pub(super) fn at(&self, place: f64) -> Pair {
         let floor = place.floor();
@@ -62,8 +62,6 @@ impl CachedProcess {
         let weight = place - floor;
         let (low, high) = self.neighbours(index);
         let product = 2.0 * weight * (1.0 - weight);
-        // Between two correlated numbers, linear interpolation has less variance: without a
-        // correction, gusts would be weaker there.
         let deviation = (1.0 - product * (1.0 - self.correlation)).sqrt();
         let between = |low: f64, high: f64| (low + weight * (high - low)) / deviation;
         (between(low.0, high.0), between(low.1, high.1))

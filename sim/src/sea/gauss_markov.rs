@@ -84,7 +84,7 @@ impl Trail {
 
 impl GaussMarkov {
     /// The process `name` of this game. `place` is the farthest grid position read by a given time:
-    /// a seed that is replaced then applies up to that position.
+    /// a seed replaced at that time still applies up to that position.
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;

@@ -78,7 +78,7 @@ impl HeadingTable {
         }
     }
 
-    /// The rows for a heading, and its fraction from their bin to the next.
+    /// The rows for a heading, and the heading's fraction of the way from their bin to the next.
     #[inline(always)]
     pub(super) fn at(&self, heading_rad: f64) -> (&[Segment], Lanes<f32>) {
         let (bin, fraction) = place(heading_rad);

@@ -31,8 +31,8 @@ pub struct WaveSample {
 
 /// The waves of a field, averaged over one kind of hull.
 ///
-/// The heading alone determines a component's direction from the bow, so everything except products
-/// is looked up by heading. The drift force is Newman's approximation,
+/// The heading alone determines a component's direction from the bow, so everything but the final
+/// products is looked up by heading. The drift force is Newman's approximation,
 ///
 /// ```text
 /// F = (mean F) |sum c e^(i theta)|^2 / sum c^2        c = a R
@@ -100,7 +100,7 @@ impl HullWaves {
             [surge, sway, yaw, reflected_m[wave]]
         });
         let reflected_m2: f64 = reflected_m.iter().map(|c| c * c).sum();
-        // The time average of the squares is the closed-form mean drift.
+        // Dividing by this sum makes the time average equal to the mean drift in closed form.
         let per_m2 = if reflected_m2 > 0.0 {
             1.0 / reflected_m2
         } else {
@@ -236,8 +236,8 @@ struct Sums {
     of_sin: Lanes<f32>,
 }
 
-/// The part of [`HullWaves::at`] before the sums are used, which would affect register allocation
-/// here.
+/// The part of [`HullWaves::at`] that computes the sums. Using the sums here would affect register
+/// allocation.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,

@@ -1,8 +1,8 @@
 //! The sea: the effects of waves, wind and current on a boat at a position and time.
 //!
 //! Start with [`SeaNow::forcing`], the only place where the sea acts on boats. The sea is a
-//! function of scenario, seed and time. The sea has no memory, so a world reset to an earlier time
-//! finds the same sea.
+//! function of scenario, seed and time. It has no memory, so a world reset to an earlier time finds
+//! the same sea.
 
 pub mod band;
 mod cached_process;
@@ -108,7 +108,7 @@ pub struct SeaForcing {
     pub water_rate: Planar,
     /// Wind, wave and drift forces in body axes.
     pub force: Planar,
-    /// Depth of its propellers minus that in calm water, if they ventilate, m.
+    /// Depth of the boat's propellers minus that in calm water, if they ventilate, m.
     pub submergence_change_m: [f64; 2],
 }
 
@@ -199,7 +199,7 @@ impl SeaModel {
         )
     }
 
-    /// Computes waves with these instructions, which affect only how long that takes.
+    /// Selects the instruction set for waves, which affects only the speed.
     pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
         self.waves = self
             .waves

@@ -72,7 +72,7 @@ pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
 /// stratum. Its frequency is drawn from the spectrum within the stratum: every moment is right on
 /// average, and the frequencies have no common multiple after which the sea would repeat itself.
 /// Each has one direction, so that the sea is the same process everywhere (Jefferys 1987).
-/// Directions are quantiles of the spreading at multiples of the golden ratio: few neighbouring
+/// Directions are quantiles of the spreading at multiples of the golden ratio: a few neighbouring
 /// frequencies cover all directions, and neither side is favoured.
 pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let mut stream = Stream::new(seed, "waves");
@@ -165,7 +165,7 @@ struct Curve {
 
 impl Curve {
     /// Integrates densities at the [`points`] of the interval by the trapezoidal rule. At least one
-    /// must be positive.
+    /// density must be positive.
     fn new(x: (f64, f64), mut densities: impl Iterator<Item = f64>) -> Curve {
         let mut up_to = Vec::with_capacity(PIECES + 1);
         up_to.push(0.0);

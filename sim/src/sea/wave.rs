@@ -394,8 +394,8 @@ impl WaveField {
     /// X = sum 1/2 rho g a^2 R^2 B cos b |cos b|     Y = sum 1/2 rho g a^2 R^2 L sin b |sin b|     R = 1 - e^(-2kT)
     /// ```
     ///
-    /// with b between the heading and the wave's travel. R is only a rough estimate of the hull's
-    /// reflection, hence `drift_factor`.
+    /// with b the angle between the heading and the wave's direction of travel. R is only a rough
+    /// estimate of the hull's reflection, hence `drift_factor`.
     pub fn mean_drift_newton(
         &self,
         boat: &Boat,

@@ -40,8 +40,8 @@ pub struct Attitude {
 /// The response of one kind of boat to the waves of a field.
 ///
 /// Heave, roll and pitch respond to a wave of frequency ω with wn² / (wn² − ω² + 2 i ζ wn ω) times
-/// the plane that best fits the surface at the draught. The frequency is that at a fixed place: the
-/// boat's own speed changes the frequency of encounter, but not the response.
+/// the plane that best fits the wave pressure at the draught. The frequency is that at a fixed
+/// place: the boat's own speed changes the frequency of encounter, but not the response.
 #[derive(Clone, Debug)]
 pub struct WaveResponse {
     instructions: Instructions,
@@ -186,8 +186,8 @@ struct Sums {
     heave_acceleration: Lanes<f32>,
 }
 
-/// The part of [`WaveResponse::at`] before the sums are used, which would affect register
-/// allocation here.
+/// The part of [`WaveResponse::at`] that computes the sums. Using the sums here would affect
+/// register allocation.
 struct At<'a> {
     response: &'a WaveResponse,
     pose: Pose,

@@ -7,7 +7,7 @@
 //! Declination and deviation follow the navigators' sign convention: with east positive, the needle
 //! points east of its true direction and the compass reads too low (Bowditch, The American
 //! Practical Navigator, ch. on compasses). The thrust error is proportional to the thrusters'
-//! current; its setting applies at full thrust of both thrusters.
+//! current; the configured error applies at full thrust of both thrusters.
 
 use super::truth::{Truth, whole_ticks};
 use primitives::angle::wrap_pi;

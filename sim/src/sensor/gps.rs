@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Maximum number of fixes in transit, and maximum latency in periods. A file may specify up to 12
-/// periods; rounded to whole decisions, the same time can be 18.
+/// periods; rounded to whole decisions, the same time can be 18 periods.
 pub const UNDER_WAY_MAX: usize = 18;
 /// Pairs of normal numbers per fix: bias, position, velocity, jump.
 const PAIRS: u64 = 4;

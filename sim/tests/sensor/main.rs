@@ -359,7 +359,8 @@ fn a_true_reading_follows_the_boat_s_motion() {
         // A turn to starboard pushes to starboard by u r, and astern by v r if the boat slides to
         // starboard.
         ("turn", level, [-0.25, 0.5, -GRAVITY_M_S2]),
-        // Starboard side down, the push up is to port of the mast; bow up, ahead of it.
+        // With the starboard side down, the upward push points to port of the mast; with the bow
+        // up, ahead of it.
         ("roll", rolled, [0.0, -half, -most]),
         ("pitch", pitched, [half, 0.0, -most]),
         ("surge and sway", surging, [0.4, -0.2, -GRAVITY_M_S2]),

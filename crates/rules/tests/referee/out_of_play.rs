@@ -1,4 +1,4 @@
-//! Boats out of play because they have retired.
+//! Boats that have been retired and are out of play.
 
 use crate::preset::aquaticus_2023;
 use crate::scene::{Scene, grabbed, lost};

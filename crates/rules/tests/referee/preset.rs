@@ -6,8 +6,8 @@ use rules::Rules;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The shipped rule books, modified so that boats may be side by side and every check covers
-/// everything.
+/// The shipped rule books, with a short collision distance, so that boats may be side by side, and
+/// with all checks in every tick.
 static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let folder = tempfile::tempdir().expect("a folder for files");

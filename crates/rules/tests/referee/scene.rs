@@ -119,7 +119,7 @@ impl Scene {
         self
     }
 
-    /// Moves a boat to a position from where it is.
+    /// Moves a boat from its current position.
     pub(crate) fn go(&mut self, vehicle: usize, x: f64, y: f64) -> &mut Scene {
         self.fleet[vehicle].to = Ned::from_xy(x, y);
         self

@@ -6,8 +6,8 @@ use rules::{Resolution, Rules};
 
 const CHECKS: u32 = 10_000;
 
-/// Of many checks of two defenders (0 nearer, 1 listed later) at one intruder: how often each tags,
-/// and how often each attempts to.
+/// How often each of two defenders (0 nearer, 1 listed later) tags the same intruder in [`CHECKS`]
+/// checks, and how often each attempts to.
 fn counts(resolution: Resolution, tag_probability: f64) -> [[u32; 2]; 2] {
     let rules = Rules {
         resolution,
@@ -36,8 +36,9 @@ fn counts(resolution: Resolution, tag_probability: f64) -> [[u32; 2]; 2] {
 #[test]
 fn the_share_of_successful_tags_is_that_of_the_rules_and_failures_cost_the_cooldown() {
     for p in [0.0, 0.3, 0.8, 1.0] {
-        // In turn, the second boat attempts what the first failed to do; this agrees with 20,000
-        // checks of Pyquaticus' branch mctf2026. At once, only the nearest boat attempts.
+        // With `InTurn`, the second boat makes an attempt only if the first one failed; this agrees
+        // with 20,000 checks of Pyquaticus' branch mctf2026. With `AtOnce`, only the nearest boat
+        // makes an attempt.
         for (resolution, want) in [
             (Resolution::InTurn, [[p, (1.0 - p) * p], [1.0, 1.0 - p]]),
             (Resolution::AtOnce, [[p, 0.0], [1.0, 0.0]]),

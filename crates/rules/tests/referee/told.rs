@@ -124,7 +124,7 @@ fn step(scene: &mut Scene, words: &str) -> Told<()> {
             match what {
                 "tag" => asks.tag = true,
                 "grab" => asks.grab = true,
-                _ => return Err(format!("there is no request {what}")),
+                _ => return Err(format!("unknown request {what}")),
             }
         }
         ["wait", seconds] => {
@@ -186,7 +186,7 @@ fn played(told: &str) -> Told<()> {
     if looks > 0 {
         Ok(())
     } else {
-        Err("there is no look".to_owned())
+        Err("the scene has no check".to_owned())
     }
 }
 
@@ -202,7 +202,7 @@ fn every_scene_goes_as_it_is_told() {
         let begun = text.lines().filter(|line| line.starts_with("##")).count();
         assert!(
             begun > 0 && begun == scenes.len(),
-            "{file}: {} scenes of {begun} can be read",
+            "{file}: only {} of {begun} scenes can be read",
             scenes.len()
         );
         for scene in scenes {

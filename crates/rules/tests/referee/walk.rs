@@ -103,7 +103,7 @@ impl Walk {
     }
 }
 
-/// Flags, homes, corners, the scrimmage line, the boundary, and anywhere in between.
+/// A random flag, home, corner, point on the scrimmage line or the boundary, or any other point.
 fn place(stream: &mut Stream) -> Ned {
     let grain = |metres: f64| (metres / GRAIN_M).round() * GRAIN_M;
     let (x, y) = match stream.below(8) {
@@ -275,8 +275,8 @@ fn assert_lawful(
         } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
-            // Under sequential rules a boat may be tagged after its grab, and a flag grabbed just
-            // after the boundary has sent it home.
+            // Under sequential rules, a boat may be tagged after its grab, and a flag may be
+            // grabbed just after a boat that left the field has lost it.
             assert!(
                 !before.vehicles[vehicle.index()].tagged
                     && !boat.disabled

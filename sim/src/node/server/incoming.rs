@@ -25,8 +25,8 @@ const ANSWERS_MAX: usize = 4;
 impl GameServer<'_> {
     /// Handles incoming messages, commands first. Waits up to `limit` for the first one.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
-        // Called before and after waiting, so that the remaining time is the sim's own work. If
-        // that exceeds a second, the sim was suspended.
+        // Called before and after waiting, to separate waiting from the sim's own work. If its own
+        // work takes more than a second, the sim was suspended.
         self.time.pass(clock::now(), Duration::ZERO);
         let mut next = self.inbox.next_within(limit);
         self.time.pass(clock::now(), limit);
@@ -238,7 +238,7 @@ impl GameServer<'_> {
         match request.role {
             _ if place != key => JoinReply::Refused {
                 reason: format!(
-                    "requests to join with these vehicles belong at {place}, not at {key}"
+                    "requests to join for these vehicles must be sent to {place}, not to {key}"
                 ),
             },
             Role::Gateway => self
@@ -254,7 +254,7 @@ impl GameServer<'_> {
             .join(request, random_number(), self.contest.now());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
-                // The order in force came from a different agent.
+                // The order in force may have come from a different agent.
                 self.contest.hold(*vehicle);
                 self.contest.regain_agent(*vehicle);
                 self.heard[vehicle.index()] = self.time.worked;
