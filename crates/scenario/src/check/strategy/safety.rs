@@ -26,9 +26,9 @@ pub(super) fn check_reason(scope: &Scope<'_>) {
     }
 }
 
-/// Reports every mode without safety behaviours, and an unnecessary reason. No other behaviour may
-/// outweigh a safety behaviour: constant weights are checked now, expressions are limited at run
-/// time.
+/// Reports every mode without safety behaviours, and any unnecessary reason. No other behaviour may
+/// outweigh a safety behaviour: constant weights are checked here, and expressions are limited at
+/// run time.
 pub(super) fn check(scope: &Scope<'_>, program: &mut Program) {
     let is_unsafe = program.unsafe_because.is_some();
     let mut is_lacking = false;
