@@ -14,7 +14,8 @@ pub struct GameName(String);
 impl GameName {
     /// Validates the name as part of a key.
     ///
-    /// # Errors If the name is invalid; the message lists the allowed characters.
+    /// # Errors
+    /// If the name is invalid; the message lists the allowed characters.
     pub fn new(name: &str) -> Result<GameName, String> {
         let allowed =
             |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';

@@ -9,8 +9,8 @@ pub struct Water {
     pub waves: Vec<PlaneWave>,
 }
 
-/// One plane wave. Its elevation at a place x north and y east of the datum at time t is a cos(k (x
-/// cos χ + y sin χ) − ω t + φ).
+/// One plane wave. Its elevation at a place x north and y east of the datum at time t is
+/// a cos(k (x cos χ + y sin χ) − ω t + φ).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlaneWave {
     /// a, m.

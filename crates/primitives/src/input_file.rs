@@ -61,7 +61,8 @@ pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
 
 /// Reads a text file.
 ///
-/// # Errors As for [`read`], or an error if it is not UTF-8.
+/// # Errors
+/// As for [`read`], or an error if it is not UTF-8.
 pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
     String::from_utf8(read(path, bytes_max)?)
         .map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))

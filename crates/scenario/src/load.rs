@@ -25,8 +25,8 @@ pub fn load(path: &Path) -> Result<Scenario, Problems> {
 
 /// Reads and checks a game with overrides.
 ///
-/// # Errors All faults in all files, by file, line and column; or a strategy given for an unknown
-/// team.
+/// # Errors
+/// All faults in all files, by file, line and column; or a strategy given for an unknown team.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     load_with_files(path, overrides, &Arc::default())
 }

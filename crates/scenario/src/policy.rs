@@ -49,7 +49,7 @@ pub struct PartialSpec {
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(into = "Sent", try_from = "Sent")]
 pub struct PolicyModel {
-    /// Its file name, as found.
+    /// Its file's path, or another name for messages.
     pub name: String,
     /// Its observations, actions and period.
     pub spec: PolicySpec,
@@ -62,8 +62,9 @@ pub struct PolicyModel {
 impl PolicyModel {
     /// Reads an ONNX file as a policy. Its metadata must supply the fields missing from `said`.
     ///
-    /// # Errors If the network is invalid, a field is missing or contradicts `said`, or the inputs
-    /// or outputs do not fit the spec. The message gives the values found and allowed.
+    /// # Errors
+    /// If the network is invalid, a field is missing or contradicts `said`, or the inputs or
+    /// outputs do not fit the spec. The message gives the values found and allowed.
     pub fn read(name: &str, bytes: &[u8], said: PartialSpec) -> Result<PolicyModel, String> {
         let network = Network::read(bytes).map_err(|error| error.to_string())?;
         let spec = spec_of(&network, said)?;

@@ -26,7 +26,8 @@ const OBSERVED_MAX: usize = 1 << 26;
 impl Scenario {
     /// Checks the limits of this module.
     ///
-    /// # Errors The first violation, as a string.
+    /// # Errors
+    /// The first violation, as a string.
     pub(crate) fn check_sizes(&self) -> Result<(), String> {
         let (vehicles, tick_ns) = (self.vehicles.len(), self.tick.0);
         let ticks = self.ticks_per_decision;

@@ -137,8 +137,9 @@ impl Engine {
 
     /// The allowed range of each of the two columns.
     ///
-    /// # Errors If the boat does not accept them. The message names the missing part and the
-    /// accepted columns.
+    /// # Errors
+    /// If the boat does not accept them. The message names the missing part and the accepted
+    /// columns.
     pub fn ranges(&self, pair: Pair) -> Result<[(f64, f64); 2], String> {
         match (self, pair) {
             (Engine::Thrusters(_, thruster), Pair::RadS) => match &thruster.curve {

@@ -438,8 +438,8 @@ fn peak(density: &[f64]) -> Option<Peak> {
     later.map(|at| Peak { at, foot })
 }
 
-/// The frequency of a peak: the centroid, weighted by the fourth power of density, of the part
-/// above half of its height, because a wave spectrum is wider above its peak (Young 1995).
+/// The frequency of a peak: the centroid of the part above half its height, weighted by the fourth
+/// power of density, because a wave spectrum is wider above its peak (Young 1995).
 fn centroid(hz: &[f64], density: &[f64], at: usize) -> f64 {
     let is_high = |i: &usize| density[*i] >= 0.5 * density[at];
     let low = (0..at).rev().take_while(is_high).last().unwrap_or(at);

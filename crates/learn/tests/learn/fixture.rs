@@ -33,7 +33,7 @@ pub(crate) fn training(name: &str) -> Training {
     training.unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// The default settings of PPO, which only reading a training file provides.
+/// The default settings of PPO; only a training file provides them.
 pub(crate) fn ppo() -> Ppo {
     training("first").ppo
 }

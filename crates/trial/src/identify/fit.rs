@@ -447,8 +447,8 @@ fn covariance(
 }
 
 /// The standard deviations of the search coordinates by the delete-one jackknife over segments. For
-/// white noise the result equals [`covariance`], but the errors of a real log persist for seconds,
-/// and intervals that assume white noise are then several times too narrow.
+/// white noise, the result equals [`covariance`]. However, the errors of a real log persist for
+/// seconds, and intervals that assume white noise are then several times too narrow.
 fn deviations_by_segment(
     jacobian: &DMatrix<f64>,
     residuals: &DVector<f64>,

@@ -94,8 +94,8 @@ fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
 }
 
 impl Behaviour {
-    /// Whether this is a safety behaviour that always works: for the whole field or all other
-    /// boats, without a condition or an end, with a weight and effective numbers.
+    /// Whether this is a safety behaviour that always works: it covers the whole field or all other
+    /// boats, has no condition and no end, and has a positive weight and effective numbers.
     pub fn is_guard(&self) -> bool {
         matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_))
             && self.no_guard_since().is_none()
