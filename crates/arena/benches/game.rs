@@ -1,5 +1,4 @@
-//! A whole game of Pav01 against Pav01 in one process, minds and referee included: games (and
-//! ticks) per second.
+//! Whole games in one process, minds and referee included: ticks per second.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::path::Path;
@@ -13,7 +12,6 @@ fn game(c: &mut Criterion) {
         let play = || {
             arena::play(&scenario, agent::minds_of(&scenario), 1).unwrap_or_else(|e| panic!("{e}"))
         };
-        // Ticks per second.
         group
             .throughput(Throughput::Elements(play().ticks))
             .sample_size(10);

@@ -25,8 +25,8 @@ struct Tally {
     left: usize,
     /// Of those, within five seconds after hulls touched.
     left_pushed: usize,
-    /// Of those not pushed out, times that the boat was within 15 m of another, giving way or
-    /// chasing.
+    /// Of those not pushed out, times that the boat was within 15 m of another, and so may have
+    /// been giving way or chasing.
     left_crowded: usize,
     /// Times two hulls came into contact.
     touched: usize,
@@ -34,9 +34,9 @@ struct Tally {
     collided: usize,
 }
 
-/// Time after hull contact from which a boat leaving the field no longer counts as pushed out, s.
+/// Time after a hull contact during which a boat that leaves the field counts as pushed out, s.
 const PUSH_REMEMBERED_S: f64 = 5.0;
-/// Distance below which boats make each other give way, m.
+/// Distance to another boat below which a boat counts as crowded, m.
 const CROWD_M: f64 = 15.0;
 
 fn main() {

@@ -1,6 +1,7 @@
 //! Whole Squall games in one process: no network, no clock.
 //!
-//! The world and the minds are the same as across processes, and so are the resulting bytes.
+//! The world and the minds are the same as in games across processes, and so are the results, byte
+//! for byte.
 
 use agent::{Mind, MindRunner};
 use primitives::VehicleId;
@@ -72,7 +73,7 @@ pub fn runner_of<M: Mind + ?Sized>(minds: Vec<Box<M>>) -> MindRunner<M> {
     )
 }
 
-/// Passes every mind its team's picture and the contest its order.
+/// Passes its team's picture to every mind, and the mind's order to the contest.
 pub fn decide<M: Mind + ?Sized>(contest: &mut Contest, runner: &mut MindRunner<M>) {
     let stamp = contest.pictures()[0].stamp;
     runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));

@@ -1,6 +1,6 @@
-//! Measures the primitive policies, which each have a single task. Plays episodes of their
-//! training runs with the policy and, for comparison, with stationary boats and with a random
-//! action every half second.
+//! Measures the primitive policies, each of which has a single task. Plays episodes of each
+//! policy's training run with the policy and, for comparison, with stationary boats and with a
+//! random action every half second.
 //!
 //! `cargo run --release -p squall-learn --example primitives -- [EPISODES] [FOLDER] [NAME…]`. By
 //! default it plays 128 episodes of each shipped policy,

@@ -325,10 +325,10 @@ pub struct GeofenceReport {
     pub outline: Vec<Ned>,
     /// The corners of each keep-out.
     pub keep_out: Vec<Vec<Ned>>,
-    /// Distance to the nearest edge of geofence or keep-outs, m; negative outside the permitted
-    /// water.
+    /// Distance to the nearest edge of the geofence or of a keep-out, m; negative outside the
+    /// permitted water.
     pub clearance_m: Option<f64>,
-    /// Stopping distance from the current motion, m.
+    /// Stopping distance for the current motion, m.
     pub stopping_m: Option<f64>,
     /// Predicted stopping position.
     pub stops_at: Option<Ned>,

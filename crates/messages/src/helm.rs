@@ -1,4 +1,4 @@
-//! A helm's report on request: its mode, its behaviours and the reasons for its decision.
+//! A helm's report, sent on request: its mode, its behaviours and the reasons for its decision.
 
 use primitives::id::VehicleId;
 use primitives::time::SimTime;
@@ -39,7 +39,7 @@ pub struct HelmReport {
     pub speeds: usize,
     /// The highest candidate speed, m/s.
     pub speed_max_m_s: f64,
-    /// All behaviours, by name.
+    /// All behaviours, sorted by name.
     pub behaviours: Vec<BehaviourReport>,
     /// The helm's variables.
     pub variables: Vec<VariableReport>,

@@ -43,7 +43,7 @@ pub struct Frame {
     pub score: Vec<u32>,
     /// Events since the previous frame.
     pub events: Vec<EventRecord>,
-    /// Whether operators have stopped all boats or make them hold.
+    /// Whether operators have stopped all boats or are making them hold.
     pub stopped: bool,
     /// Whether the game is over.
     pub over: bool,
@@ -183,7 +183,8 @@ impl VehicleOrder {
 }
 
 impl Frame {
-    /// Events since the previous frame, except those that refer to things outside the game.
+    /// Events since the previous frame, except those about boats, flags or teams that the game
+    /// lacks.
     pub fn logged<'a>(&'a self, scenario: &'a Scenario) -> impl Iterator<Item = Logged> + 'a {
         self.events
             .iter()
@@ -286,7 +287,7 @@ pub enum JoinReply {
         /// The vehicle.
         vehicle: String,
     },
-    /// Refused for good: do not retry.
+    /// Permanently refused: do not retry.
     Refused {
         /// The reason.
         reason: String,
@@ -325,7 +326,7 @@ pub enum Control {
 pub type ControlReply = Result<(), String>;
 
 impl Control {
-    /// Whether the command stops boats or pauses the game: such commands need no token.
+    /// Whether the command stops boats or makes them hold; such commands need no token.
     pub fn stops(self) -> bool {
         matches!(self, Control::EStop | Control::Halt)
     }

@@ -166,7 +166,7 @@ impl Picture {
     const NUMBER_MAX: f64 = 1e6;
 
     /// Removes boats with a non-finite or out-of-range number and returns their count. A mind can
-    /// then decide on the others.
+    /// still use the remaining ones.
     pub fn remove_bad_numbers(&mut self) -> u64 {
         let count = |picture: &Picture| picture.own.len() + picture.contacts.len();
         let before = count(self);

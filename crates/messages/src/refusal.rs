@@ -136,7 +136,7 @@ impl Add for Refusals {
 }
 
 impl fmt::Display for Refusals {
-    /// The reasons with non-zero counts: `2 x malformed, 1 x for another tick`.
+    /// The reasons with non-zero counts: `2 x malformed, 1 x for a different tick`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let occurred = Refusal::ALL
             .iter()

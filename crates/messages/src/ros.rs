@@ -35,8 +35,9 @@ fn definition(name: &str) -> Option<&'static str> {
         .map(|(_, text)| *text)
 }
 
-/// A definition with all nested definitions, in the form of ROS 2 recordings; `None` for an unknown
-/// name. `schema` is that of a [`Message`](crate::Message), such as `squall_msgs/msg/Frame`.
+/// A definition with all nested definitions, in the format of ROS 2 recordings; `None` for an
+/// unknown name. `schema` is that of a [`Message`](crate::Message), such as
+/// `squall_msgs/msg/Frame`.
 pub fn full_definition(schema: &str) -> Option<String> {
     let mut names = vec![schema.rsplit('/').next()?];
     let mut text = definition(names[0])?.to_owned();

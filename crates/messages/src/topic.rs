@@ -15,7 +15,7 @@ impl GameName {
     /// Validates the name as part of a key.
     ///
     /// # Errors
-    /// Lists the characters that are allowed.
+    /// If the name is invalid; the message lists the allowed characters.
     pub fn new(name: &str) -> Result<GameName, String> {
         let allowed =
             |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';

@@ -9,7 +9,7 @@ pub struct Water {
     pub waves: Vec<PlaneWave>,
 }
 
-/// One plane wave. Its elevation at a place x north and y east of the datum at the time t is
+/// One plane wave. Its elevation at a place x north and y east of the datum at time t is
 /// a cos(k (x cos χ + y sin χ) − ω t + φ).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlaneWave {
@@ -17,7 +17,7 @@ pub struct PlaneWave {
     pub amplitude_m: f64,
     /// k.
     pub wavenumber_rad_m: f64,
-    /// χ, the compass bearing it travels to.
+    /// χ, the compass bearing it travels towards.
     pub toward_rad: f64,
     /// ω.
     pub omega_rad_s: f64,

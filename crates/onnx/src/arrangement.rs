@@ -294,7 +294,7 @@ fn slice_axis(
     let start_at = from_start(start, shape[axis]);
     let end_at = from_start(end, shape[axis]);
     let selected: Vec<usize> = match step {
-        0 => return Err(node.wrong("step 0", "another step")),
+        0 => return Err(node.wrong("step 0", "a step other than 0")),
         1.. => {
             let range = start_at.clamp(0, length)..end_at.clamp(0, length);
             range

@@ -376,8 +376,8 @@ pub(super) fn combine(
     planner.add(Work::Binary { operation, right }, left, shape)
 }
 
-/// The memory of a row that repeats to this shape: the row's own if its shape, without leading
-/// ones, is a suffix of that shape.
+/// The memory of numbers that, repeated, fill this shape: the row's own if its shape, without
+/// leading ones, is a suffix of that shape; otherwise an expanded copy.
 fn repeatable(
     planner: &mut Planner,
     row: Row,

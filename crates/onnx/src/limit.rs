@@ -50,7 +50,7 @@ enum Content {
     Message(Kind),
     /// Consecutive numbers of at least one byte each.
     Integers,
-    /// Requires about as much memory as in the file.
+    /// Takes about as much memory as in the file.
     Plain,
 }
 

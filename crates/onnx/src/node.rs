@@ -76,7 +76,7 @@ impl<'a> Node<'a> {
     }
 
     pub(super) fn text(&self, name: &str, default: &'a str) -> Result<&'a str, NetworkError> {
-        let attribute = self.attribute(name, STRING, "a text")?;
+        let attribute = self.attribute(name, STRING, "a string")?;
         let bytes = attribute.map(|attribute| attribute.s.as_deref().unwrap_or_default());
         let text = bytes.map_or(Ok(default), str::from_utf8);
         text.map_err(|_| self.wrong(format!("{name} in an unknown encoding"), "UTF-8 text"))

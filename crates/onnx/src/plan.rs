@@ -22,7 +22,7 @@ pub(super) struct Plan {
     pub(super) digest: u128,
 }
 
-/// The largest integer up to which all integers have exact floats.
+/// The largest integer up to which all integers are exact as floats.
 const INTEGER_MAX: u64 = 1 << 24;
 
 #[derive(Clone, Copy, PartialEq)]

@@ -19,8 +19,8 @@ use xxhash_rust::xxh3::xxh3_128;
 /// broadcasting. The last is from ONNX 1.23; later semantics are unknown.
 const VERSIONS: RangeInclusive<i64> = 7..=28;
 
-/// The beginning of a Git LFS pointer: the file in place of a large model in a repository checked
-/// out without Git LFS.
+/// The beginning of a Git LFS pointer, which replaces a large model in a repository checked out
+/// without Git LFS.
 const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
 
 /// Operators whose outputs after the first may be unused.

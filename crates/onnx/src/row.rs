@@ -146,7 +146,7 @@ pub(super) fn gather_elements(planner: &mut Planner, node: &Node) -> Result<Valu
         _ => {
             return Err(node.wrong(
                 "other indices",
-                "computed integers; use Gather for constant ones",
+                "computed integers; use Gather for constant indices",
             ));
         }
     };

@@ -31,7 +31,8 @@ pub(super) enum Work {
         reduction: Reduction,
         row_size: usize,
     },
-    /// Copies blocks of `size` numbers to the output, from an offset on and at a fixed distance.
+    /// Copies blocks of `size` numbers to the output, starting at an offset and a fixed distance
+    /// apart.
     Spread {
         size: usize,
         offset: usize,

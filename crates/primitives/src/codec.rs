@@ -49,7 +49,7 @@ pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
     encode_plain(message)
 }
 
-/// Encodes a message for another system, which has no stamp.
+/// Encodes a message without a stamp, for another system.
 ///
 /// # Panics
 /// If the length of a list is not known in advance: use plain structs of numbers, lists and
@@ -63,8 +63,8 @@ pub fn encode_plain<T: Serialize>(message: &T) -> Vec<u8> {
     bytes
 }
 
-/// Decodes a message from another system, which has no stamp; `None` if it has a different layout.
-/// Up to three bytes of padding may follow.
+/// Decodes a message without a stamp, from another system; `None` if its layout differs. Up to
+/// three bytes of padding may follow.
 pub fn decode_plain<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let body = bytes.strip_prefix(&ENCAPSULATION)?;
     let (message, used) = cdr_encoding::from_bytes::<T, LittleEndian>(body).ok()?;

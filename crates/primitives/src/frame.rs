@@ -1,7 +1,7 @@
-//! The coordinate frames of a boat: the field's north-east-down and its own body, with the rotation
-//! between them.
+//! The coordinate frames of a boat: the field's north-east-down frame and the boat's own, with the
+//! rotation between them.
 //!
-//! Inside Squall positions are NED: `north_m` and `east_m` from the datum, headings in radians
+//! Inside Squall, positions are NED: `north_m` and `east_m` from the datum, headings in radians
 //! clockwise from north. Files, the terminal and Python use x east, y north and compass degrees.
 
 use crate::math;

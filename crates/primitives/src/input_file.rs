@@ -1,13 +1,12 @@
-//! Reads a user's input file up to a size limit. Only regular files are allowed: a pipe may never
-//! end, and devices contain no data.
+//! Reads a user's input file up to a size limit. Only regular files are allowed, because pipes and
+//! devices may never end.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
-/// Size limit (bytes) of a table that this program appends to, and of a log: some millions of
-/// games.
+/// Size limit (bytes) of a table that this program appends to, and of a log: several million games.
 pub const TABLE_BYTES_MAX: u64 = 2 << 30;
 
 /// Opens a file for reading.
@@ -63,14 +62,14 @@ pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
 /// Reads a text file.
 ///
 /// # Errors
-/// As above, or an error if it is not UTF-8.
+/// As for [`read`], or an error if it is not UTF-8.
 pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
     String::from_utf8(read(path, bytes_max)?)
         .map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
 }
 
-/// Converts a file's content to UTF-8. Windows programs write UTF-16 with a byte order mark as
-/// "Unicode text".
+/// Converts a file's content to UTF-8. Some Windows programs save "Unicode text" as UTF-16 with a
+/// byte order mark.
 ///
 /// # Errors
 /// If UTF-16 content is invalid.

@@ -36,7 +36,7 @@ impl Instructions {
     pub fn of_this_machine() -> Vec<Instructions> {
         #[cfg_attr(
             not(target_arch = "x86_64"),
-            expect(unused_mut, reason = "there is one")
+            expect(unused_mut, reason = "there is only one")
         )]
         let mut sets = vec![Instructions(Set::Baseline)];
         #[cfg(target_arch = "x86_64")]
@@ -68,7 +68,7 @@ impl Instructions {
         target_arch = "x86_64",
         expect(
             unsafe_code,
-            reason = "code for a processor that was found while the program runs cannot be called otherwise"
+            reason = "code for instructions detected at run time cannot be called otherwise"
         )
     )]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {

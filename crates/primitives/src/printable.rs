@@ -1,4 +1,4 @@
-//! Makes strings from files and other nodes safe for a terminal: escapes control sequences in them.
+//! Makes strings from files and other nodes safe for a terminal by escaping control sequences.
 
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -8,7 +8,7 @@ const LINE_MAX: usize = 2000;
 /// Number of characters shown from the end of a longer line.
 const TAIL: usize = 400;
 
-/// Escapes a string of many lines: control characters except line breaks and tabs as in JSON, and
+/// Escapes a multi-line string as in JSON: control characters, except line breaks and tabs, and
 /// characters that change the writing direction.
 pub fn text(text: &str) -> Cow<'_, str> {
     spelt(text, |character| {
@@ -61,7 +61,8 @@ fn spelt(text: &str, is_spelt: impl Fn(char) -> bool) -> Cow<'_, str> {
     let mut shown = String::with_capacity(text.len());
     for character in text.chars() {
         if is_spelt(character) {
-            write!(shown, "\\u{:04x}", u32::from(character)).expect("a string takes everything");
+            write!(shown, "\\u{:04x}", u32::from(character))
+                .expect("writing to a string cannot fail");
         } else {
             shown.push(character);
         }

@@ -1,5 +1,5 @@
-//! Reseeding: a game unchanged up to a certain time and redrawn after it, for one past and several
-//! futures.
+//! Reseeding: keeps a game unchanged up to a certain time and redraws what follows, so that one
+//! past can have several futures.
 //!
 //! Draws after that time use a new seed. Earlier draws stay the same, and so do those for the whole
 //! game (waves, start positions, roles). A process with memory, such as gusts or receiver drift,
@@ -84,9 +84,9 @@ impl TimedNoise {
     /// The noise for draws at `now`.
     #[inline]
     pub fn at(&self, now: SimTime) -> Noise {
-        // A new key takes effect at a certain time, and no snapshot is restored: the past is
-        // replayed, which at most doubles the time of a branch. In return, a branch is a game like
-        // any other, minds included, given by a seed and a key on the command line.
+        // The noise changes at a certain time, and no snapshot is restored: the past is replayed,
+        // which at most doubles the time of a branch. In return, a branch is a game like any other,
+        // minds included, specified by a seed and a setting on the command line.
         let begun = |(after, _): &&(SimTime, Noise)| *after < now;
         self.later
             .iter()

@@ -104,8 +104,8 @@ impl Noise {
         (self.normal(2 * count), self.normal(2 * count + 1))
     }
 
-    /// A normally distributed number with mean 0 and variance 1, in place of a uniform number.
-    /// Further bits, if needed, are derived from the first.
+    /// A normally distributed number with mean 0 and variance 1, in place of the uniform number at
+    /// `count`. Further bits, if needed, are derived from the first.
     pub fn normal(&self, count: u64) -> f64 {
         let first = self.bits(count);
         normal(|asked| {

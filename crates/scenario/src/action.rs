@@ -98,7 +98,7 @@ pub struct ActionTable {
 /// Maximum number of actions of a table.
 const ACTIONS_MAX: usize = 64;
 
-// The numbers are finite.
+// Equality is reflexive, because the numbers are finite.
 impl Eq for ActionTable {}
 
 impl ActionTable {
@@ -163,8 +163,8 @@ pub enum Action {
 }
 
 impl Action {
-    /// The discrete action sampled from the softmax of these logits with a uniform number from 0 to
-    /// 1.
+    /// The discrete action sampled from the softmax of these logits; `unit` is a uniform random
+    /// number from 0 to 1.
     pub fn drawn(logits: &[f32], unit: f64) -> Action {
         let mut below = 0.0;
         let all = probabilities(logits);

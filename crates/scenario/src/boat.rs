@@ -187,8 +187,8 @@ pub struct Hull<E = f64> {
     /// Added sway-yaw coupling A26, kg m.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub added_sway_yaw_kg_m: f64,
-    /// Linear surge resistance -X_u, kg/s. Default: both thrusters full ahead give the autopilot's
-    /// `speed_max_m_s` (at least 0).
+    /// Linear surge resistance -X_u, kg/s. Default: such that both thrusters full ahead give the
+    /// autopilot's `speed_max_m_s`, at least 0.
     #[schemars(range(min = 0, max = 1000000))]
     pub surge_linear_kg_s: E,
     /// Quadratic surge resistance -X_|u|u, kg/m.
@@ -240,7 +240,7 @@ pub struct Thruster {
     pub flaws: Flaws,
 }
 
-/// Deviations from ideal thrusters. The default is none.
+/// Deviations from ideal thrusters. By default there are none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Flaws {
     /// Maximum setting, as a fraction of full ahead or astern.
@@ -307,7 +307,7 @@ pub struct Battery {
     /// Power of both thrusters at full ahead, W.
     #[schemars(rename = "full_power_w", range(min = 0, max = 1000000), extend("x-field" = "full_power_watt"))]
     pub full_power_watt: f64,
-    /// Power of all other consumers, W.
+    /// Power of all other loads, W.
     #[schemars(rename = "hotel_power_w", range(min = 0, max = 100000))]
     #[schemars(extend("x-field" = "hotel_power_watt", "default" = 0))]
     pub hotel_power_watt: f64,

@@ -29,7 +29,7 @@ pub(super) fn note_override(path: &Path, bytes: &[u8], built_in: &[u8]) {
 /// `scenarios/seas/gale.toml`, however the path is written.
 pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     // A path typed in the folder `scenarios` lacks that folder's name, so make it absolute. If the
-    // working directory is unknown, use the path as typed.
+    // working directory is unknown, use the path as given.
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut parts = vec![];
     for component in whole.components() {

@@ -27,7 +27,7 @@ impl Scenario {
                 .any(|boat| are_random_sensors(&boat.sensors))
     }
 
-    /// Whether a team's boats get different roles in a random order.
+    /// Whether a team assigns different roles to its boats in a random order.
     fn deals_roles(&self) -> bool {
         let fellows = |(i, one): (usize, &Vehicle)| {
             let others = self.vehicles[..i]

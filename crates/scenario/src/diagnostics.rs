@@ -1,4 +1,4 @@
-//! The problems found so far, by their places in the virtual text of all files.
+//! The problems found so far, reported by their offsets in the virtual text of all files.
 
 use super::problem::{Problem, Problems};
 use super::source::Sources;
@@ -25,7 +25,7 @@ impl Diagnostics {
         self.count(at, message, |sources| !sources.is_broken_line(at));
     }
 
-    /// Reports a problem that a syntax error may have caused, unless the file has one.
+    /// Reports a problem, unless the file has a syntax error that may be its cause.
     pub(super) fn note_if_intact(&self, at: usize, message: impl Into<String>) {
         self.count(at, message, |sources| !sources.is_broken_file(at));
     }

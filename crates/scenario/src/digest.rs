@@ -4,7 +4,7 @@ use super::Scenario;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The digest of a plan (of its parsed content, `meaning`, and its games' files), in hex.
+/// The digest of a plan, in hex: of its parsed content, `meaning`, and of its games' files.
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
     let contents = files
         .iter()
@@ -30,7 +30,7 @@ impl Scenario {
             ..self.clone()
         };
         digest_of(
-            &serde_json::to_string(&meant).expect("it has names for keys"),
+            &serde_json::to_string(&meant).expect("its map keys are strings"),
             &texts,
         )
     }

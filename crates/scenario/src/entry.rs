@@ -44,14 +44,14 @@ pub fn policy_path(model: &Path) -> PathBuf {
     }
 }
 
-/// Whether a path is one of [`strategy_path`] or [`policy_path`].
+/// Whether a path comes from [`strategy_path`] or [`policy_path`].
 pub fn is_strategy_path(path: &Path) -> bool {
     let is_host = path.extension().is_some_and(|end| end == HOST);
     is_host && path.with_extension("").is_dir() || policy_strategy(path).is_some()
 }
 
-/// The content of the strategy that plays the model in `FILE.onnx`. A model that chooses options
-/// plays the built-in strategy with these options.
+/// The content of the strategy that plays the model in `FILE.onnx`. For a model that chooses
+/// options, it is based on the built-in strategy with these options.
 fn policy_strategy(path: &Path) -> Option<String> {
     let model = path
         .extension()

@@ -116,7 +116,7 @@ impl Kind {
     }
 
     /// The kind to which a file with these top-level keys clearly belongs instead of this one,
-    /// because it has at least two more of them.
+    /// because that kind has at least two more of them.
     pub fn other_by_keys(self, kinds: &[Kind], keys: &BTreeSet<String>) -> Option<Kind> {
         Some(Kind::by_keys(kinds, keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)
     }

@@ -26,8 +26,7 @@ pub fn load(path: &Path) -> Result<Scenario, Problems> {
 /// Reads and checks a game with overrides.
 ///
 /// # Errors
-/// All faults in all files, by file, line and column; or the fault in a strategy for an unknown
-/// team.
+/// All faults in all files, by file, line and column; or a strategy given for an unknown team.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     load_with_files(path, overrides, &Arc::default())
 }
@@ -97,7 +96,7 @@ impl Scenario {
         })
     }
 
-    /// The game of a recipe, with numbers drawn in this way, and the data read for it.
+    /// The game of a recipe, with numbers drawn by this method, and the data read for it.
     fn drawn_again(
         &self,
         recipe: &Recipe,

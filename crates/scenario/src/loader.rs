@@ -66,7 +66,7 @@ impl Loader {
     }
 
     /// Reads and checks the file at `path`, with numbers drawn for `owner`. If it cannot be read,
-    /// the problem is at the reference, `asked_at`.
+    /// the problem is reported at the reference, `asked_at`.
     pub(super) fn read<F: ScenarioFile>(
         &self,
         path: &Path,

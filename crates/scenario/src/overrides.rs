@@ -12,7 +12,8 @@ pub struct Overrides {
     pub sea: Option<PathBuf>,
     /// Strategy files by team name; they also replace the strategies of individual boats.
     pub strategies: BTreeMap<String, PathBuf>,
-    /// Whether to exchange the strategies of the two teams; no boat of the game may have its own.
+    /// Whether to exchange the strategies of the two teams; requires that no boat has its own
+    /// strategy.
     #[serde(default)]
     pub exchange_strategies: bool,
     /// Whether this is a rehearsal: all boats are simulated, whatever their source.

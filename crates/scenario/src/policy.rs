@@ -49,7 +49,7 @@ pub struct PartialSpec {
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(into = "Sent", try_from = "Sent")]
 pub struct PolicyModel {
-    /// Its file name, as found.
+    /// Its file's path, or another name for messages.
     pub name: String,
     /// Its observations, actions and period.
     pub spec: PolicySpec,
@@ -63,8 +63,8 @@ impl PolicyModel {
     /// Reads an ONNX file as a policy. Its metadata must supply the fields missing from `said`.
     ///
     /// # Errors
-    /// If the network is invalid, a field is missing or contradicts `said`, or the inputs and
-    /// outputs do not match: the values found and allowed.
+    /// If the network is invalid, a field is missing or contradicts `said`, or the inputs or
+    /// outputs do not fit the spec. The message gives the values found and allowed.
     pub fn read(name: &str, bytes: &[u8], said: PartialSpec) -> Result<PolicyModel, String> {
         let network = Network::read(bytes).map_err(|error| error.to_string())?;
         let spec = spec_of(&network, said)?;
@@ -243,8 +243,8 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), S
 }
 
 /// The index of the output with the action: the only output of the right size, or else the only
-/// scalar, as an action index. If there are several scalars, such as a value, it is the integer
-/// one. Options have one output, whose size is their number.
+/// scalar, which is an action's index. Of several scalars, for example an action and a value, it is
+/// the only integer. For options, it is the only output with more than one number.
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     let of = |is_it: &dyn Fn(&Port) -> bool| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
@@ -255,7 +255,7 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
     let wrong = |expected: &str| Err(format!("its outputs are {outputs}, expected {expected}"));
     if action == ActionSpace::Options {
         let [output] = of(&|port| port.size > 1)[..] else {
-            return wrong("one output with a number for each of two options or more");
+            return wrong("one output with a number for each of two or more options");
         };
         return Ok(output);
     }
@@ -271,7 +271,7 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, String> {
         _ => {
             let action = json(&action);
             let or_index = if has_index {
-                ", or else one with the number of the action"
+                ", or else one with the index of the action"
             } else {
                 ""
             };

@@ -63,8 +63,8 @@ impl<T> Document<'_, T> {
         self.loader.diagnostics.note(self.at(path), message);
     }
 
-    /// Reports a fault in the value at `path` that a syntax error may have caused, unless the file
-    /// has one.
+    /// Reports a fault in the value at `path`, unless the file has a syntax error that may be its
+    /// cause.
     pub(super) fn note_if_intact(&self, path: &str, message: impl Into<String>) {
         let at = self.at(path);
         self.loader.diagnostics.note_if_intact(at, message);
@@ -104,7 +104,7 @@ impl<T> Document<'_, T> {
         self.loader.read(&file, Some(self.at(path)), F::NAME)
     }
 
-    /// Like [`Document::referenced`], and also resolves the reference.
+    /// Like [`Document::referenced`], but also replaces `reference` with the path it refers to.
     pub fn resolved<F: ScenarioFile>(&self, path: &str, reference: &mut PathBuf) -> Option<F> {
         let file = self.referenced(path, &*reference);
         *reference = self.resolve(path, &*reference);
@@ -117,14 +117,14 @@ impl<T> Document<'_, T> {
     }
 }
 
-/// Maximum size of a file, bytes: files are written by people.
+/// Maximum size of a file, bytes. Files are written by hand, so they are small.
 const LARGEST_BYTES: u64 = 4 << 20;
 const LONGEST_CHAIN: usize = 16;
 /// Keys that are ignored in the bases of a strategy file.
 const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
 /// Reads the file of the given kind at `path` with its bases, and draws its numbers for `owner`. If
-/// it cannot be read, the problem is at the reference, `asked_at`.
+/// it cannot be read, the problem is reported at the reference, `asked_at`.
 pub(super) fn document<'a, T: DeserializeOwned>(
     loader: &'a Loader,
     kind: Kind,
@@ -190,7 +190,7 @@ fn document_of_tree<'a, T: DeserializeOwned>(
             wrong,
         }),
         Err(error) => {
-            let message = format!("the file does not fit its own schema: {error}");
+            let message = format!("the file does not match its own schema: {error}");
             loader.diagnostics.note(tree.at, message);
             None
         }
@@ -228,7 +228,7 @@ pub(super) fn tree(
             let why = if paths.contains(&path) {
                 "circular base"
             } else {
-                "too many levels of base"
+                "too many levels of bases"
             };
             let message = format!("{why}: {} -> {}", through.join(" -> "), path.display());
             loader.diagnostics.note(at, message);

@@ -4,7 +4,7 @@ use super::{Scenario, Source};
 use primitives::id::VehicleId;
 use thiserror::Error;
 
-/// A game with real boats cannot run without a clock.
+/// The error for a game with real boats that would run without a clock.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "{} (source = \"external\") can run in real time only: use --pace realtime, or --rehearse to simulate every boat",

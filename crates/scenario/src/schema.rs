@@ -18,8 +18,8 @@
 //! * Choices are enums with `rename_all = "snake_case"` and a doc comment for each choice.
 //! * `extend("x-expected" = "…")` states the expected value in messages where the type alone is not
 //!   enough.
-//! * `rename` with `extend("x-field" = "…")` gives the key a different name, and thereby a
-//!   different unit, from those of the field.
+//! * `rename` with `extend("x-field" = "…")` gives the key a name that differs from the field's,
+//!   and thereby a different unit.
 //! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
 //!
 //! [`declared`] is the schema in this form, used for reading files (see `validate`); [`schema`] is

@@ -165,7 +165,7 @@ pub struct Wander {
     pub speed_m_s: (f64, f64),
 }
 
-/// A tidal stream: a sinusoid of time.
+/// A tidal stream, sinusoidal in time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tide {
     /// The maximum flood stream, m/s.
@@ -211,10 +211,10 @@ pub struct RandomEddies {
     /// Number of eddies.
     #[schemars(range(min = 0, max = 100))]
     pub count: u32,
-    /// Core radius, from and to, m.
+    /// Minimum and maximum core radius, m.
     #[schemars(with = "[f64; 2]", inner(range(min = 1, max = 1000)), extend("default" = [10, 40]))]
     pub radius_m: (f64, f64),
-    /// Maximum flow, from and to, m/s; in either direction.
+    /// Minimum and maximum peak flow, m/s; in either direction.
     #[schemars(with = "[f64; 2]", inner(range(min = 0, max = 5)), extend("default" = [0.1, 0.3]))]
     pub peak_m_s: (f64, f64),
 }

@@ -37,7 +37,7 @@ pub struct Gps {
     /// Time between fixes, s.
     #[schemars(range(min = 0.02, max = 10), extend("default" = 0.2))]
     pub period_s: f64,
-    /// Age of a fix on output, s.
+    /// Age of a fix when output, s.
     #[schemars(range(min = 0, max = 2), extend("default" = 0.1))]
     pub latency_s: f64,
     /// Periods without fixes. Default: none.
@@ -54,7 +54,7 @@ pub struct Gps {
     pub jump: Jump,
 }
 
-/// Random periods.
+/// Randomly timed periods.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Outage {
     /// Rate, 1/s.

@@ -16,7 +16,7 @@ pub struct Setting {
     pub key: String,
     /// The value, as TOML.
     pub value: String,
-    /// The file with the setting, to which paths are relative; `--set KEY` on the command line.
+    /// The file with the setting, to which paths are relative; `--set KEY` for the command line.
     pub path: PathBuf,
     /// Its line, from 1.
     pub line: usize,

@@ -1,5 +1,5 @@
-//! Limits on numbers and their products that determine how much memory a game needs, or on which
-//! its calculations rely.
+//! Limits on numbers, and products of numbers, that determine how much memory a game needs or that
+//! its calculations rely on.
 
 use crate::Scenario;
 use crate::boat::Drive;
@@ -24,10 +24,10 @@ const CANDIDATES_MAX: usize = 1 << 27;
 const OBSERVED_MAX: usize = 1 << 26;
 
 impl Scenario {
-    /// Checks these numbers and products.
+    /// Checks the limits of this module.
     ///
     /// # Errors
-    /// The first number beyond its limits, as a string.
+    /// The first violation, as a string.
     pub(crate) fn check_sizes(&self) -> Result<(), String> {
         let (vehicles, tick_ns) = (self.vehicles.len(), self.tick.0);
         let ticks = self.ticks_per_decision;

@@ -1,4 +1,4 @@
-//! A scenario file as typed: a tree of values, each with its place.
+//! A parsed scenario file: a tree of values, each with its position.
 
 use super::draw::distribution_kind;
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A value and its place in the virtual text of all files.
+/// A value and its position in the virtual text of all files.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     /// Its offset.

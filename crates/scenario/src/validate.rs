@@ -2,7 +2,7 @@
 //! defaults.
 //!
 //! The result always satisfies the schema. A default, or else the minimum or an empty string,
-//! replaces a faulty or missing value, so that later checks can find more faults;
+//! replaces a faulty or missing value, so that later checks can find more faults.
 //! `Document::is_sound` returns whether a value is from the file.
 
 use super::diagnostics::{NAME_EXPECTED, NAME_PATTERN, is_name, keys_of};

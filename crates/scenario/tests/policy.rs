@@ -1,4 +1,4 @@
-//! Models of policies: their metadata applies and must not contradict other specifications.
+//! Policy models: their metadata applies, and must not contradict values given elsewhere.
 
 use onnx::{Head, Layer, Perceptron};
 use scenario::action::ActionSpace;

@@ -1,4 +1,4 @@
-//! Expressions in strategy files have the meaning they have in CEL, print as typed, and survive
+//! Expressions in strategy files mean the same as in CEL, print as written, and survive
 //! serialisation.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]

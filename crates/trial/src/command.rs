@@ -69,7 +69,8 @@ impl Command {
 pub enum Pair {
     /// Shaft speeds of a boat with a propeller curve, rad/s.
     RadS,
-    /// Settings in per cent: of a thrust table's setting, or of a propeller's full ahead or astern.
+    /// Settings in per cent: as in a thrust table, or relative to a propeller's full ahead or
+    /// astern.
     Pct,
     /// Thrusts, N, converted to settings by the inverse thrust curve.
     Newton,
@@ -137,7 +138,8 @@ impl Engine {
     /// The allowed range of each of the two columns.
     ///
     /// # Errors
-    /// If the boat does not accept them: names its missing part and the commands that it accepts.
+    /// If the boat does not accept them. The message names the missing part and the accepted
+    /// columns.
     pub fn ranges(&self, pair: Pair) -> Result<[(f64, f64); 2], String> {
         match (self, pair) {
             (Engine::Thrusters(_, thruster), Pair::RadS) => match &thruster.curve {

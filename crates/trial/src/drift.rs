@@ -93,7 +93,7 @@ mod tests {
                     trial_boat.sample((ROW * row).as_s(), Command::Hold)
                 })
                 .collect();
-            let drift = Drift::of(&samples).expect("it was sailed");
+            let drift = Drift::of(&samples).expect("there are samples");
             let speed_m_s = drift.speed_m_s();
             let toward_rad = drift.toward_rad().expect("it moves");
             assert!(

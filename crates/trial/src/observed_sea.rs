@@ -63,8 +63,8 @@ pub struct ObservedDrift {
 /// What a log reveals about the sea.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservedSea {
-    /// The waves; none if the receiver's noise hides them. If a wind sea and swell have a peak
-    /// each, the higher one comes first.
+    /// The waves; none if the receiver's noise hides them. If wind sea and swell each have a peak,
+    /// the higher one comes first.
     pub waves: Vec<ObservedWaves>,
     /// The boat's drift while its thrusters were off; `None` if it cannot be distinguished from
     /// zero.
@@ -215,8 +215,8 @@ impl ObservedSea {
         })
     }
 
-    /// The sea file: the waves, and the drift as a current, without `by_waves_m_s`, the drift of
-    /// such a boat in these waves alone. `log` is the log's name.
+    /// The sea file: the waves, and the drift as a current, minus `by_waves_m_s`, the drift of such
+    /// a boat in these waves alone. `log` is the log's name.
     pub fn written(&self, log: &str, by_waves_m_s: Ned) -> String {
         let mut text = format!(
             "# Estimated from {} by squall sea: value ± 95 %.\n",
@@ -245,8 +245,8 @@ impl ObservedSea {
             let current_m_s = drift_m_s - by_waves_m_s;
             let _ = write!(
                 text,
-                "\n# The boat's drift, less that of these waves. It contains the wind's share: the file has no \
-                 wind.\n[current]\nspeed_m_s = {:.3} # ± {:.3}\ntoward_deg = {:.0}\n",
+                "\n# The boat's drift, minus the drift due to these waves. It includes the effect of the wind, \
+                 which this file omits.\n[current]\nspeed_m_s = {:.3} # ± {:.3}\ntoward_deg = {:.0}\n",
                 current_m_s.length(),
                 speed_m_s.plus_minus,
                 compass_deg_from_rad(current_m_s.direction_rad())
@@ -351,7 +351,7 @@ fn transform(values: &[f64], weights: &[f64], turn_rad: f64) -> [f64; 2] {
     sum
 }
 
-/// The mean of blocks, without one of them.
+/// The mean of blocks, if requested without one of them.
 fn mean(blocks: &[&Block], without: Option<usize>) -> Block {
     let mut sum = Block {
         density: vec![0.0; blocks[0].density.len()],
@@ -375,7 +375,7 @@ fn mean(blocks: &[&Block], without: Option<usize>) -> Block {
     sum
 }
 
-/// The mean of blocks, and the means without each one.
+/// The mean of all blocks, and the means that leave out one block each.
 struct Averages {
     all: Block,
     without: Vec<Block>,
@@ -390,8 +390,8 @@ impl Averages {
     }
 }
 
-/// A value of all blocks, and half the width of its 95 % interval, from the values without each
-/// block. `off` is the difference of two values.
+/// A value of all blocks, and half the width of its 95 % interval, from the values that leave out
+/// one block each. `off` is the difference of two values.
 fn jackknife(
     averages: &Averages,
     of: impl Fn(&Block) -> Option<f64>,
@@ -438,8 +438,8 @@ fn peak(density: &[f64]) -> Option<Peak> {
     later.map(|at| Peak { at, foot })
 }
 
-/// The frequency of a peak: the centroid, weighted by the fourth power of density, of the part
-/// above half of its height, because a wave spectrum is wider above its peak (Young 1995).
+/// The frequency of a peak: the centroid of the part above half its height, weighted by the fourth
+/// power of density, because a wave spectrum is wider above its peak (Young 1995).
 fn centroid(hz: &[f64], density: &[f64], at: usize) -> f64 {
     let is_high = |i: &usize| density[*i] >= 0.5 * density[at];
     let low = (0..at).rev().take_while(is_high).last().unwrap_or(at);

@@ -69,8 +69,9 @@ impl Orders {
     }
 }
 
-/// The pair of command columns and their indices. In a trial's own file, which also has a different
-/// pair, `port_newton,starboard_newton` are actual thrusts, not commands.
+/// The pair of command columns and their indices. In a trial's own file,
+/// `port_newton,starboard_newton` are actual thrusts, not commands; such a file also has a
+/// different pair.
 fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     let place = |head: &str| {
         // The heading in a trial's own file is the actual one; the ordered heading has its own

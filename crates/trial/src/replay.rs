@@ -36,7 +36,7 @@ pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
 /// Simulates a boat with `orders` for `duration`. Returns a sample every [`ROW`], beginning with
 /// the start.
 ///
-/// A command is in force from the first tick that does not begin before its time.
+/// A command is in force from the first tick that begins at or after its time.
 ///
 /// # Errors
 /// [`Unsound`] if the boat's state becomes non-finite.

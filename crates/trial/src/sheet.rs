@@ -217,7 +217,7 @@ impl Sheet {
         } else {
             text.to_owned()
         };
-        // A setting computed as full ahead may exceed it by a rounding error.
+        // A setting computed as full ahead may exceed the limit by a rounding error.
         let slack = 1e-9 * (high - low);
         match self.parse(text) {
             Some(number) if (low - slack..=high + slack).contains(&number) => {

@@ -176,7 +176,7 @@ fn in_body(psi_rad: f64, ned: Ned) -> Body {
 }
 
 /// A kinematic boat uses half the sum of two fractions as thrust and half their difference as
-/// rudder; full thrust with half rudder would need a fraction greater than 1.
+/// rudder. Full thrust with half rudder would need a fraction greater than 1.
 fn order(command: Command) -> Order {
     match command {
         Command::Thrust { port, starboard } => Order::Thrust { port, starboard },

@@ -1,5 +1,5 @@
-//! A boat among runs of its own model lies anywhere in their spread; a different boat does not, and
-//! the number that differs is named.
+//! A boat compared with runs of its own model lies anywhere in their spread. A different boat does
+//! not, and the comparison names the number that differs.
 
 use primitives::SimTime;
 use primitives::stream::Stream;
@@ -95,7 +95,7 @@ fn a_sound_model_puts_the_boat_evenly_within_the_spread() {
         let mean =
             |all: &[Vec<f64>]| all.iter().map(|of| of[quantity]).sum::<f64>() / all.len() as f64;
         let (inside, rank) = (mean(&inside), mean(&ranks));
-        // 95 % and a half, apart from chance over eight logs of nine segments.
+        // Expected: 95 % and one half, apart from chance over eight logs of nine segments.
         assert!((0.88..=0.99).contains(&inside), "{quantity}: {inside}");
         assert!((0.4..=0.6).contains(&rank), "{quantity}: {rank}");
     }

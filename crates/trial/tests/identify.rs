@@ -72,7 +72,7 @@ fn log_csv(
     )
 }
 
-/// The same in a sea.
+/// Like [`log_csv`], but in a sea.
 fn log_in(
     sea: &Sea,
     boat: &Boat,
@@ -83,7 +83,8 @@ fn log_in(
     let sheet = Sheet::read("orders.csv", orders_csv.as_bytes()).expect("it is CSV");
     let orders = Orders::of_sheet(&sheet, &Engine::new(boat)).expect("it understands them");
     let mut trial_boat = TrialBoat::new(boat, sea, TICK, 1, &Start::default());
-    let mut samples = trial::replay(&mut trial_boat, &orders, orders.end()).expect("it sails");
+    let mut samples =
+        trial::replay(&mut trial_boat, &orders, orders.end()).expect("its state stays finite");
     let mut errors = NOISE.map(|sigma| noise * sigma * stream.normal());
     let fresh = (1.0 - correlation * correlation).sqrt();
     for sample in &mut samples {
@@ -191,7 +192,7 @@ fn intervals_hold_for_errors_that_last() {
     assert!(within >= 46, "{within} of 54 within their 95 %");
 }
 
-/// A log from water that nobody measured: the fit finds its current, and the boat.
+/// A log from water that nobody measured: the fit finds the current and the boat's parameters.
 #[test]
 fn an_unknown_current_is_found_with_the_boat() {
     let truth = boat();
@@ -405,7 +406,7 @@ fn what_happens_in_a_gap_of_the_log_is_not_guessed() {
     let Drive::Thrusters { thruster, .. } = &mut truth.drive else {
         panic!("it has thrusters")
     };
-    // After the gap, the state of its thrusters is unknown: let it not matter.
+    // The state of the thrusters after the gap is unknown, so make it irrelevant.
     (thruster.slew_per_s, thruster.lag_s) = (10.0, 0.05);
     let csv = log_csv(
         &truth,

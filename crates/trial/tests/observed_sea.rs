@@ -71,7 +71,7 @@ fn two_sines_are_measured_as_scipy_measures_them() {
         [long + short, velocity.north, velocity.east]
     });
     let sea = observed(&motion).expect("it has waves");
-    // The two are waves of their own, and the first is 4 × 0.2 / √2 high.
+    // The sines count as separate waves, and the first is 4 × 0.2 / √2 high.
     let [waves, short] = sea.waves[..] else {
         panic!("two peaks: {sea:?}");
     };

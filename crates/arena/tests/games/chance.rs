@@ -16,7 +16,8 @@ fn digest(scenario: &Scenario, seed: u64) -> String {
     played(&game).digest
 }
 
-/// The shipped games with few boats. Larger ones have the same sources of randomness but take long.
+/// The shipped games with few boats. Larger ones have the same sources of randomness but take too
+/// long.
 fn small_games() -> Vec<Scenario> {
     let scenario = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.expect("it can be read").path();

@@ -69,9 +69,9 @@ fn crossing(compensate_drift: bool) -> (Vec<(f64, f64)>, f64) {
 
 #[test]
 fn a_boat_that_only_points_at_its_goal_drifts_along_the_curve_of_pursuit() {
-    // With k the ratio of current to speed through the water, and the goal at the distance a across
-    // the current: y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), as for a boat rowed to the other bank
-    // (Boole 1859, ch. XI).
+    // Let k be the ratio of current to speed through the water, and a the distance to the goal,
+    // across the current. Then y = a/2 ((x/a)^(1-k) - (x/a)^(1+k)), as for a boat rowed to the
+    // other bank (Boole 1859, ch. XI).
     let k = 0.5 / SPEED_M_S;
     let curve_m = |to_go_m: f64| {
         let share = (to_go_m / 200.0).clamp(0.0, 1.0);

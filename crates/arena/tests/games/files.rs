@@ -1,4 +1,4 @@
-//! Games from files, and their contests.
+//! Loads games from files and plays them.
 
 use agent::MindRunner;
 use scenario::{Outcome, Scenario};
@@ -31,7 +31,8 @@ pub(crate) fn played(scenario: &Scenario) -> Outcome {
         .unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Plays, and shows the contest after every decision until `shown` returns `false`.
+/// Plays a game, and passes the contest and the minds to `shown` after every decision, until it
+/// returns `false`.
 pub(crate) fn watch(scenario: &Scenario, mut shown: impl FnMut(&Contest, &MindRunner) -> bool) {
     let mut contest = Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"));
     let mut runner = arena::runner_of(agent::minds_of(scenario));

@@ -22,7 +22,7 @@ fn played(game: &'static str, seed: u64) -> Outcome {
     let outcome = Arc::clone(
         PLAYED
             .lock()
-            .expect("no test fails with it")
+            .expect("no test panics while holding it")
             .entry((game, seed))
             .or_default(),
     );
@@ -85,7 +85,7 @@ fn the_same_seed_is_the_same_game() {
         let again = play(&shipped(game), 5);
         assert_eq!(first, again, "{game}");
     }
-    // Forty boats that avoid each other take long to simulate, so two minutes of game time must do.
+    // Forty boats that avoid each other take long to simulate, so limit the game to two minutes.
     let mut swarm = shipped("swarm_20v20.toml");
     swarm.rules.time_limit = SimTime::from_s(120.0);
     let [first, again, other] = [5, 5, 6].map(|seed| play(&swarm, seed));
@@ -108,8 +108,7 @@ fn mirrored_teams_draw() {
 
 #[test]
 fn harbour_games_have_winners() {
-    // Between identical boats without noise, both teams mirrored each other and every game was a
-    // draw.
+    // With identical boats and no noise, the teams mirrored each other and every game was a draw.
     let won = (1..=6)
         .filter(|seed| played("harbour_2v2.toml", *seed).winner.is_some())
         .count();

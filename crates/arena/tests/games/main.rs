@@ -1,4 +1,4 @@
-//! Whole games in one process, from the shipped files and from a test's own.
+//! Whole games in one process, from shipped files and from files that a test writes.
 
 mod chance;
 mod drift;

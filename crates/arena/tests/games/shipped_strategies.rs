@@ -138,7 +138,8 @@ fn our_strategies_beat_those_of_the_paper_from_either_side() {
                 lost += u64::from(points[own] < points[opponent]);
             }
         }
-        // Over hundreds of games, each wins about three quarters of the decided ones.
+        // Over hundreds of games, each of ours wins about three quarters of those that are not
+        // drawn.
         assert!(
             won > lost && 2 * won > SEEDS,
             "{ours}: {won} won, {lost} lost"
@@ -161,7 +162,7 @@ fn twenty_boats_a_side_grab_and_capture() {
 #[test]
 fn a_tagged_boat_does_not_lie_at_an_edge() {
     // In this game, a boat once took 258 s to get home. For most of that time it lay 10 m from an
-    // edge with no boat near, because the helm's steadiness bonus outweighed the way home.
+    // edge with no boat near, because the helm's hysteresis bonus outweighed the way home.
     const HOME_S: f64 = 150.0;
     let game =
         scenario::load(&shipped("games/strategy_4_vs_3.toml")).and_then(|game| game.of_seed(1));

@@ -223,10 +223,10 @@ impl Game {
             * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
             // A potential that depends only on the state, and is 0 at the end, does not change the
-            // best policy (Ng, Harada and Russell, ICML 1999). Places pay the undiscounted gain of
-            // a step. A payment per second failed: half a second on the right course changed the
-            // sum by only one per cent, and boats trained to retreat on 300,000 such samples ended
-            // no closer to home than stationary ones.
+            // best policy (Ng, Harada and Russell, ICML 1999). Rewards for places pay the
+            // undiscounted gain of a step. Paying them per second failed: half a second on the
+            // right course changed the sum by only one per cent, and boats trained to retreat on
+            // 300,000 such samples ended no closer to home than stationary ones.
             let after = if ending == Ending::Over {
                 0.0
             } else {

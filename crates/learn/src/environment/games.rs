@@ -15,7 +15,7 @@ use sim::Contest;
 /// The state of play of a game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
-    /// The seed; with the setup it identifies the game.
+    /// The seed; together with the setup, it identifies the game.
     pub seed: u64,
     /// The sides.
     pub side: Side,
@@ -63,7 +63,7 @@ pub struct Games {
     setup: Setup,
     slots: Vec<Slot>,
     starts: Starts,
-    /// `None` for a single thread, because a step is shorter than waking another thread.
+    /// `None` for a single thread, because a step takes less time than waking another thread.
     pool: Option<rayon::ThreadPool>,
     rows_per_game: usize,
     observation_size: usize,
@@ -75,10 +75,10 @@ struct Slot {
     game: Game,
     /// The game that ended in the last step and has been replaced.
     last: Option<Game>,
-    /// Number of the current game; grows by the number of slots.
+    /// Number of the current game; each new game increases it by the number of slots.
     number: u64,
-    /// Seed of the current game; grows in the same way. With repeating starts, it selects one of
-    /// them.
+    /// Seed of the current game; increases in the same way. With repeating starts, it selects one
+    /// of them.
     seed: u64,
     ended: Option<Finished>,
     /// The teacher's actions in the last step, by row.

@@ -54,7 +54,7 @@ pub struct RawSetup {
     pub opponents: Vec<(f64, Option<PathBuf>)>,
     /// The rewards file. `None`: all rewards are 0.
     pub rewards: Option<PathBuf>,
-    /// Value of a reward one step later, 0 to 1.
+    /// Discount factor per step, 0 to 1.
     pub discount: f64,
     /// A critic's input.
     pub critic: CriticInput,

@@ -76,7 +76,7 @@ pub struct Setup {
     pub opponents: Vec<(f64, Player)>,
     /// The reward definition.
     pub rewards: Rewards,
-    /// Value of a potential one step later.
+    /// Discount factor of potentials per step.
     pub discount: f64,
 }
 

@@ -29,7 +29,7 @@ struct Shown {
     rewards: Vec<f32>,
     counts: Vec<bool>,
     /// A critic's inputs, rows × values, and those at the end of a game; empty if the critic
-    /// receives the observations.
+    /// receives only the observations.
     states: Vec<f32>,
     final_states: Vec<f32>,
 }

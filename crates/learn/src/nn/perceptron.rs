@@ -150,9 +150,9 @@ impl Perceptron {
         }
     }
 
-    /// Adds the gradient of a loss with respect to all parameters to `gradient`, given its gradient
-    /// with respect to the outputs, rows × values, which is overwritten. Returns the gradient with
-    /// respect to the inputs if requested.
+    /// Adds the gradient of a loss with respect to all parameters to `gradient`. `by_output` is the
+    /// loss's gradient with respect to the outputs, rows × values; it is overwritten. Writes the
+    /// gradient with respect to the inputs to `by_input`, if given.
     pub fn backward(
         &self,
         trace: &Trace,

@@ -178,7 +178,8 @@ impl Trainer {
     /// [`SetupError::NoStart`] if a game cannot begin.
     ///
     /// # Panics
-    /// If it has been updated since it was started or resumed: games would restart.
+    /// If the trainer has been updated since it was started or resumed, because its games would
+    /// restart.
     pub fn watch(&mut self, watches: Watches) -> Result<(), SetupError> {
         assert!(
             self.state.updates_of_epoch == 0 || self.is_behind,

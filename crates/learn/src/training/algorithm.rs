@@ -50,7 +50,7 @@ impl Algorithm {
         }
     }
 
-    /// Value of a reward one step later.
+    /// The discount factor per step.
     pub fn discount(&self) -> f32 {
         match self {
             Algorithm::Ppo(ppo) => ppo.discount,

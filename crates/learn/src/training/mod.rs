@@ -173,7 +173,7 @@ pub struct Stage {
     /// Length, in samples.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
     pub samples: u64,
-    /// Fraction of games won in an evaluation that ends the stage early; draws count half. Default:
+    /// Fraction of evaluation games won that ends the stage early; draws count half. Default:
     /// never.
     #[schemars(range(min = 0, max = 1))]
     pub until_won: Option<f64>,

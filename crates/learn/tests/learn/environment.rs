@@ -308,7 +308,8 @@ fn team_sizes_are_drawn_for_every_game_and_rows_without_a_boat_do_not_count() {
         }
         environment.step(&[Action::Discrete(4); 12]).unwrap();
     }
-    // 100 of each size are expected; 5 standard deviations are 46. Unequal are five of six.
+    // Expected: 100 teams of each size, and unequal teams in five of six games. Five standard
+    // deviations are 46.
     assert!(
         drawn
             .iter()

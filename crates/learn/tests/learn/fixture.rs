@@ -33,7 +33,7 @@ pub(crate) fn training(name: &str) -> Training {
     training.unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// The default settings of an algorithm, which can be declared only by a training file.
+/// The default settings of PPO; only a training file provides them.
 pub(crate) fn ppo() -> Ppo {
     training("first").ppo
 }

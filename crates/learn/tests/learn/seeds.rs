@@ -1,5 +1,5 @@
-//! Restarted environments: games with given seeds, one boat of a team, and a setup as users write
-//! it.
+//! Restarted environments, games with given seeds, policies for one boat of a team, and setups as
+//! users write them.
 
 use super::fixture::{checked, file, raw, written};
 use agent::{Action, ObservationSpace};

@@ -106,7 +106,7 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
         );
         assert!(
             run(3) == (state.clone(), progress),
-            "{name}: 3 threads gave other results"
+            "{name}: 3 threads gave different results"
         );
 
         // Resumed whenever games restart, and at every fifth update, where games and past policies
@@ -130,7 +130,7 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
         );
         assert!(
             trainer.state() == state,
-            "{name}: other results after resuming {taken_up:?} times"
+            "{name}: different results after resuming {taken_up:?} times"
         );
     }
 }

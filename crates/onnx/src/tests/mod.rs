@@ -474,7 +474,7 @@ fn arrangements_that_do_not_fit_are_refused() {
         ),
         (
             |g| with_integers(g, "Slice", &[&[0], &[2], &[1], &[0]]),
-            "(Slice): found step 0, expected another step",
+            "(Slice): found step 0, expected a step other than 0",
         ),
         (
             |g| with_integers(g, "Slice", &[&[0], &[2], &[1], &[-1]]),

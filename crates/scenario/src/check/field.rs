@@ -116,7 +116,8 @@ fn obstacle(
             Obstacle::Polygon { corners }
         }
         _ => {
-            let message = "obstacle has neither or both, expected either circle or polygon";
+            let message =
+                "obstacle has neither or both of circle and polygon, expected one of them";
             document.note_if_intact(path, message);
             return None;
         }

@@ -486,7 +486,7 @@ impl Fleet<'_> {
             document.note(&path, message);
             return None;
         }
-        // The team whose strategy the boats of a team follow.
+        // The team whose strategy this team's boats follow.
         let is_exchanged = overrides.exchange_strategies && document.raw.team.len() == 2;
         let other = |team: TeamId| TeamId(1 - team.0);
         let team = team.map(|team| if is_exchanged { other(team) } else { team });

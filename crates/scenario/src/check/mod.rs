@@ -1,5 +1,5 @@
-//! Converts files as typed to checked types: estimates missing values and applies rules that
-//! combine several values.
+//! Converts files as written to checked types: estimates missing values, and checks rules that
+//! involve several values.
 //!
 //! The schema has already checked the range of each value. Every check reports all faults in the
 //! `Diagnostics` of the loader and returns `None` if there were any.

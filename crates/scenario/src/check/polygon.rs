@@ -3,7 +3,7 @@
 use primitives::frame::Ned;
 use rules::field::{do_meet, turn};
 
-/// Checks that no two sides of a polygon meet, except at the corner that neighbours share.
+/// Checks that no two sides of a polygon meet, except adjacent sides at their common corner.
 ///
 /// # Errors
 /// The index of the faulty corner, and the reason.
@@ -17,7 +17,7 @@ pub fn check_corners(corners: &[Ned]) -> Result<(), (usize, String)> {
                 "polygon has two corners at the same position, expected distinct corners".into(),
             ));
         }
-        // Neighbours share a corner, but must not fold back onto one another.
+        // Adjacent sides share a corner, but must not fold back onto each other.
         let crossing = (i + 1..count).find(|&j| {
             let is_next = j == i + 1;
             let is_before = (j + 1) % count == i;

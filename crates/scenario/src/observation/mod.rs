@@ -24,10 +24,10 @@ pub enum ObservationSpace {
     Pyquaticus2026,
     /// Squall's own values: sensor and radio data, in a frame that is the same for both teams.
     Squall {
-        /// Number of teammates with a slot; if there are more, the nearest.
+        /// Number of slots for teammates; if there are too few, the nearest get them.
         #[schemars(range(min = 0, max = 255))]
         mates: u8,
-        /// Number of enemies with a slot, nearest first.
+        /// Number of slots for enemies, nearest first.
         #[schemars(range(min = 0, max = 255))]
         enemies: u8,
         /// Number of successive decisions included, newest first.

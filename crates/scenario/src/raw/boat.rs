@@ -1,4 +1,4 @@
-//! A boat file as typed.
+//! A boat file as written.
 
 use crate::boat::{Autopilot, Flaws, Hold, Hull, Kinematic, Propeller, Windage};
 use crate::sensor::Sensors;

@@ -1,4 +1,4 @@
-//! A field file as typed.
+//! A field file as written.
 
 use rules::field::Plan;
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! A game file as typed.
+//! A game file as written.
 
 use super::{FilePath, Name, Position};
 use crate::Source;
@@ -83,7 +83,7 @@ pub(crate) struct Vehicle {
     pub(crate) heading_deg: Option<f64>,
     /// Instead of `at`: a random position in a rectangle.
     pub(crate) spawn: Option<Spawn>,
-    /// When it joins the game, s; until then it holds, out of action.
+    /// Joining time, s; until then it holds, out of action.
     #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
     pub(crate) joins_s: f64,
     /// Source of the boat's motion.
@@ -100,7 +100,7 @@ pub(crate) struct Fleet {
     /// Number of boats.
     #[schemars(range(min = 1, max = 10000))]
     pub(crate) count: usize,
-    /// Names; {} becomes the number, from 1. Default: team name, _ and {}.
+    /// Name pattern; {} becomes the number, from 1. Default: team name, _ and {}.
     pub(crate) name: Option<String>,
     /// Boat file. Default: the game's.
     pub(crate) boat: Option<FilePath>,
@@ -108,7 +108,7 @@ pub(crate) struct Fleet {
     pub(crate) strategy: Option<FilePath>,
     /// Random positions in a rectangle. Default: midway between their flag and the scrimmage line.
     pub(crate) spawn: Option<Spawn>,
-    /// When they join the game, s; until then they hold, out of action.
+    /// Joining time, s; until then they hold, out of action.
     #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
     pub(crate) joins_s: f64,
 }

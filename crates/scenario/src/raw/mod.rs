@@ -1,4 +1,4 @@
-//! Scenario files as typed, where these differ from the checked types: `check` converts them.
+//! Scenario files as written, where they differ from the checked types; `check` converts them.
 //!
 //! All other types of a scenario are used in both forms. Every key is declared once, in one form or
 //! the other; `schema` describes how. The doc comments are the descriptions in the JSON Schemas and

@@ -1,4 +1,4 @@
-//! A sea file as typed.
+//! A sea file as written.
 
 use crate::sea::{Eddy, PROFILE_EXPONENT, RandomEddies, Wander};
 use crate::size::COMPONENTS_MAX;
@@ -65,11 +65,11 @@ pub(crate) struct Waves {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Spectrum {
-    /// A growing sea with a sharp peak: `hs_m` and `tp_s`, or `fetch_km`.
+    /// A growing sea with a sharp peak; requires `hs_m` and `tp_s`, or `fetch_km`.
     Jonswap,
-    /// Any sea: `hs_m` and `tp_s`, or `fetch_km`.
+    /// Any sea; requires `hs_m` and `tp_s`, or `fetch_km`.
     Bretschneider,
-    /// A fully developed sea: `hs_m` or `wind_m_s`.
+    /// A fully developed sea; requires `hs_m` or `wind_m_s`.
     PiersonMoskowitz,
 }
 
@@ -160,7 +160,7 @@ pub(crate) struct Tide {
     pub(crate) phase: f64,
 }
 
-/// A flow that grows linearly to one side, as in a river from the bank.
+/// A flow that grows linearly to one side, like a river away from its bank.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Shear {
     /// Compass bearing of the flow, degrees.

@@ -1,4 +1,4 @@
-//! A strategy file as typed.
+//! A strategy file as written.
 
 use super::{FilePath, Name};
 use crate::schema::{self, entries, properties};
@@ -22,7 +22,7 @@ pub struct Strategy {
     /// How roles are assigned to boats.
     #[schemars(extend("default" = "fixed"))]
     pub(crate) assignment: Assignment,
-    /// Settings of decisions.
+    /// How the helm decides.
     pub(crate) helm: Helm,
     /// Allows modes without `op_region` or `avoid_collision`.
     #[schemars(extend("default" = false))]
@@ -90,7 +90,7 @@ pub(crate) struct Mode {
     pub(crate) r#in: Option<String>,
     /// Condition; required, except for the last sibling, which has none.
     pub(crate) when: Option<String>,
-    /// Values of variables, set when the mode begins.
+    /// Values assigned to variables when the mode begins.
     #[schemars(extend("default" = {}))]
     pub(crate) set: Values,
 }
@@ -100,7 +100,7 @@ pub(crate) struct Mode {
 pub(crate) struct Rule {
     /// Event, for example "enemy grabs". Required without `when`.
     pub(crate) on: Option<String>,
-    /// The rule applies only while this holds. Required without `on`.
+    /// Condition under which the rule applies. Required without `on`.
     pub(crate) when: Option<String>,
     /// New values by variable.
     #[schemars(extend("x-expected" = "values for variables"))]

@@ -120,7 +120,7 @@ pub trait Values {
 impl Values for () {}
 
 impl Expression {
-    /// True or false.
+    /// The constant true or false.
     pub fn truth(is: bool) -> Expression {
         Expression::Constant(truth(is))
     }

@@ -77,7 +77,7 @@ pub enum Fact {
     TimeLeftS,
     /// Time since the mode began, s.
     ModeS,
-    /// Time since the last decision, s; for summing times.
+    /// Time since the last decision, s; for summing durations.
     StepS,
     /// Speed over the ground, m/s.
     #[strum(serialize = "speed_m_s")]
@@ -101,7 +101,7 @@ pub enum Measure {
     OnOwnSide,
     /// Whether it is a tagged boat.
     IsTagged,
-    /// Number of teammates nearer to it than the boat, except tagged boats and carriers.
+    /// Number of teammates nearer to it than this boat, except tagged boats and carriers.
     MatesNearer,
 }
 

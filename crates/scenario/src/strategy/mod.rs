@@ -80,7 +80,7 @@ pub struct Program {
     pub unsafe_because: Option<String>,
 }
 
-/// Settings of decisions.
+/// How the helm decides.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Helm {
     /// Number of courses compared.
@@ -165,7 +165,7 @@ pub enum Who {
 #[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "each says it itself")]
+#[expect(missing_docs, reason = "the names are self-explanatory")]
 pub enum What {
     Grabs,
     Captures,

@@ -33,8 +33,8 @@ pub enum Mark {
     EnemyFlag,
     /// Place to which a flag must be brought.
     CapturePlace,
-    /// Place where a tagged boat is untagged, or the enemy's flag, while the boat must first leave
-    /// the untag place.
+    /// Place where a tagged boat is untagged; the enemy's flag while the boat must first leave that
+    /// place.
     UntagPlace,
 }
 

@@ -57,7 +57,7 @@ struct ModelKeys {
     /// Competition entry in place of a model: its folder or `solution.py`.
     #[schemars(extend("minLength" = 1, "x-expected" = "the path of a folder"))]
     host: Option<String>,
-    /// Python that runs the entry. Default: python3.
+    /// Python interpreter for the entry. Default: python3.
     #[schemars(length(min = 1))]
     python: Option<String>,
     /// Wall-clock limit for an entry's decision, s. Default: 1.
@@ -79,7 +79,7 @@ struct ModelKeys {
 pub struct Host {
     /// Its folder, or its `solution.py`.
     pub path: String,
-    /// The Python that runs it.
+    /// The Python interpreter that runs it.
     pub python: String,
     /// Wall-clock time for each decision, s.
     pub limit_s: f64,

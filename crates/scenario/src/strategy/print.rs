@@ -1,4 +1,4 @@
-//! Prints expressions in CEL, as typed in a file.
+//! Prints expressions in CEL, as written in a file.
 
 use super::{Expression, Join, Kind, Named, Place, Program};
 
@@ -34,17 +34,17 @@ impl Program {
         }
     }
 
-    /// A condition of this program, as typed.
+    /// A condition of this program, as written.
     pub fn condition_text(&self, expression: &Expression) -> String {
         self.text(expression, &Kind::Truth, Precedence::Choice)
     }
 
-    /// A number of this program, as typed.
+    /// A number of this program, as written.
     pub fn number_text(&self, expression: &Expression) -> String {
         self.text(expression, &Kind::Number, Precedence::Choice)
     }
 
-    /// A value for a variable of this program, as typed.
+    /// A value for a variable of this program, as written.
     pub fn value_text(&self, variable: u16, expression: &Expression) -> String {
         let kind = &self.variables[usize::from(variable)].kind;
         self.text(expression, kind, Precedence::Choice)
@@ -131,7 +131,7 @@ impl Program {
 }
 
 impl Place {
-    /// The place as typed.
+    /// The place as written.
     fn text(&self) -> String {
         match self {
             Place::At(at) => format!("[{}, {}]", at.east, at.north),

@@ -13,7 +13,7 @@ use strum::IntoStaticStr;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, IntoStaticStr, JsonSchema)]
 #[strum(serialize_all = "snake_case")]
 #[schemars(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "each says it itself")]
+#[expect(missing_docs, reason = "each task's type has the documentation")]
 pub enum Task {
     Waypoint(Waypoint),
     Loiter(Loiter),

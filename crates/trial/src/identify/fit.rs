@@ -145,7 +145,7 @@ const NORMAL_975: f64 = 1.96;
 const START_M_S: f64 = 6.0;
 /// Half-width of an interval above which the wind counts as undetermined, m/s.
 const VAGUE_M_S: f64 = 2.0;
-/// Ratio of misfits from which one fit is clearly better: 1 % in each of six channels.
+/// Ratio of misfits above which one fit is clearly better: 1 % in each of six channels.
 const CLEARLY: f64 = 1.06;
 /// Number of searches, each with channel weights from the previous residuals.
 const WEIGHINGS: usize = 3;
@@ -267,8 +267,8 @@ fn wind_of(sea: &Sea) -> Ned {
 }
 
 /// A fit with the mean wind. A wind and its opposite can explain a log almost equally well, since
-/// drag hides the difference; so the search starts from several winds, and a wind that is not
-/// clearly better than another is rejected.
+/// drag hides the difference. The search therefore starts from several winds, and a wind that is
+/// not clearly better than another is rejected.
 fn fit_wind(
     setting: &Setting,
     search: impl Fn(&Setting) -> Result<Fit, NoFit>,
@@ -447,8 +447,8 @@ fn covariance(
 }
 
 /// The standard deviations of the search coordinates by the delete-one jackknife over segments. For
-/// white noise the result equals [`covariance`], but the errors of a real log persist for seconds,
-/// and intervals that assume white noise are then several times too narrow.
+/// white noise, the result equals [`covariance`]. However, the errors of a real log persist for
+/// seconds, and intervals that assume white noise are then several times too narrow.
 fn deviations_by_segment(
     jacobian: &DMatrix<f64>,
     residuals: &DVector<f64>,

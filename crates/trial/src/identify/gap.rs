@@ -2,8 +2,8 @@
 //! the same commands, and which number of the boat file, if changed, would close it.
 //!
 //! Every run restarts from the log at the beginning of each segment, with its own sea and sensor
-//! errors, so if the model is sound, the boat has any rank among the runs with equal probability (a
-//! rank histogram, Hamill 2001).
+//! errors. If the model is sound, every rank of the boat among the runs is therefore equally
+//! probable (a rank histogram, Hamill 2001).
 
 use super::fit::{Estimate, Fit, NoFit, Quality, fit, problem, promises, qualities, student_975};
 use super::log::{HEADING, Log, SURGE, SWAY, X, YAW_RATE};
@@ -22,7 +22,7 @@ const ROWS_MAX: usize = 20_000;
 const SLIP_M_S: f64 = 0.3;
 /// The quantiles that bound the central 95 %.
 const TAILS: [f64; 2] = [0.025, 0.975];
-/// Number of parameters to fit: those that promise most.
+/// Number of parameters to fit: the most promising ones.
 const CANDIDATES: usize = 3;
 
 /// The compared quantities: name and unit.
@@ -299,8 +299,8 @@ pub struct Change {
     pub explains: f64,
 }
 
-/// The numbers of the boat file whose change, one at a time, would bring the model closest to the
-/// log, best first; only changes larger than their intervals.
+/// The numbers of the boat file that, changed one at a time, would bring the model closest to the
+/// log, best first. Only changes larger than their intervals are included.
 ///
 /// # Errors
 /// [`NoFit`] if the boat cannot be simulated.

@@ -42,7 +42,8 @@ pub struct Log {
     ends: Vec<usize>,
 }
 
-/// Time without a row after which a segment begins, s: what happened meanwhile is unknown.
+/// Time without a row after which a new segment begins, s, because the commands and the motion in
+/// the gap are unknown.
 const GAP_MAX_S: f64 = 5.0;
 /// Minimum number of rows for a fit.
 const ROWS_MIN: usize = 20;
@@ -123,7 +124,7 @@ impl Log {
         self.orders.append(&other.orders, shift);
     }
 
-    /// The measured state at a row; what is not measured is zero.
+    /// The measured state at a row; missing measurements are zero.
     pub(super) fn start(&self, row: usize) -> Point {
         self.measured[row].map(|cell| if cell.is_finite() { cell } else { 0.0 })
     }
@@ -153,7 +154,7 @@ impl Log {
             let due = starts
                 .last()
                 .is_none_or(|last| self.times[row] - self.times[*last] >= segment);
-            // A remainder shorter than half a segment is added to the previous one.
+            // A remainder shorter than half a segment is added to the previous segment.
             let end = self.ends[self.ends.partition_point(|end| *end <= row)];
             let left = self.times[end - 1] - self.times[row];
             let is_first = starts

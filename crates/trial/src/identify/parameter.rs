@@ -159,8 +159,8 @@ impl Parameter {
     }
 }
 
-/// A parameter as varied by the search. Those of the boat vary by a factor, so that they stay
-/// positive and steps are comparable; those of the water by a difference.
+/// A parameter as varied by the search. Those of the boat are multiplied by a factor, so that they
+/// stay positive and steps are comparable; those of the water are shifted by a difference.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knob {
     pub(super) parameter: Parameter,

@@ -22,8 +22,8 @@ const PROFILE_EXPONENT: f64 = 0.12;
 const PARAMETER_STEP: f64 = 1e-4;
 /// Step of a start for finite differences, in standard deviations of its channel.
 const START_STEP: f64 = 1e-2;
-/// Number of corrections of the starts for each set of parameters; few are enough, since the search
-/// continues from the last starts.
+/// Number of corrections of the starts for each set of parameters; a few are enough, since the
+/// search continues from the last starts.
 const CORRECTIONS: usize = 2;
 
 /// The fit of one log.

@@ -52,8 +52,8 @@ pub(super) fn rollout(
     );
     let mut points = vec![[f64::NAN; 6]; segments[0]];
     for (segment, start) in segments.windows(2).zip(starts) {
-        // First the thrusters follow the earlier commands; the boat's motion in this time does not
-        // matter.
+        // First, the thrusters follow the earlier commands; the boat's motion during this time does
+        // not matter.
         while trial_boat.now() + SimTime(setting.tick.0 / 2) < log.times[segment[0]] {
             trial_boat.step(log.orders.at(trial_boat.now()));
         }

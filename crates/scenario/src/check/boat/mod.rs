@@ -169,7 +169,7 @@ fn windage(raw: &raw::Boat) -> Windage {
     }
 }
 
-/// Checks the mass matrix: if singular, acceleration would be unbounded.
+/// Checks the mass matrix. If it were singular, accelerations would be unbounded.
 fn check_inertia(document: &Document<raw::Boat>, boat: &Boat) {
     let hull = &boat.hull;
     let m = hull.mass_kg;

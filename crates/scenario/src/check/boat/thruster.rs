@@ -17,7 +17,7 @@ pub(super) fn thruster(document: &Document<raw::Boat>, raw: &raw::Thruster) -> O
         }
         (None, Some(rows)) => table(document, rows),
         (Some(_), Some(_)) => {
-            let message = "thruster has both, expected either propeller or table_pct_newton";
+            let message = "thruster has both propeller and table_pct_newton, expected only one";
             document.note("thruster.propeller", message);
             return None;
         }

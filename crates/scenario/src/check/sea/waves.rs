@@ -77,7 +77,7 @@ fn height_and_period(document: &Document<raw::Sea>, raw: &raw::Waves) -> Option<
         document.note("waves.tp_s", message);
         return None;
     }
-    // Without wind there are no waves; 0.5 m/s is the minimum.
+    // A wind of zero would raise no waves; 0.5 m/s is the minimum.
     let wind_m_s = raw
         .wind_m_s
         .or(wind.map(|wind| wind.speed_m_s.clamp(0.5, 50.0)));

@@ -120,7 +120,7 @@ fn checked_table(
     table
 }
 
-/// The checked value at `path`; `about` is the schema of the value as typed.
+/// The checked value at `path`; `about` is the schema of the value in the file.
 fn checked(scope: &Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
     let value = match (about["title"].as_str(), given) {
         (Some("a number or an expression"), _) => {

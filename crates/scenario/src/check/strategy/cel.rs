@@ -1,4 +1,4 @@
-//! Parses expressions as CEL, recording the place of every part in the file.
+//! Parses expressions as CEL, and records where each part is in the file.
 
 use crate::diagnostics::Diagnostics;
 use cel::common::ast::{IdedExpr, SourceInfo};
@@ -42,7 +42,7 @@ pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str)
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {
-            // The parser reports the places of parts only if the syntax is invalid, so add a
+            // The parser reports the positions of parts only if the syntax is invalid, so add a
             // surplus bracket.
             let places = parser().parse(&format!("{text}\n)")).err();
             let errors = places.into_iter().flat_map(|errors| errors.errors);
@@ -64,7 +64,8 @@ pub(super) fn parse(diagnostics: &Diagnostics, key: &str, at: usize, text: &str)
     }
 }
 
-/// The byte offset in `text` of a line and column, in characters from 1; 0 and 0 is the start.
+/// The byte offset in `text` of a line and a column (in characters), both counted from 1; (0, 0) is
+/// the start.
 fn byte_at(text: &str, (line, column): (isize, isize)) -> usize {
     let lines = (line - 1).max(0) as usize;
     let start: usize = text.split_inclusive('\n').take(lines).map(str::len).sum();

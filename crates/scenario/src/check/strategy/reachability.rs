@@ -66,8 +66,8 @@ pub(super) fn check(scope: &Scope<'_>, program: &Program) {
     }
 }
 
-/// The values of those variables in a mode's condition that only ever have constant values, as part
-/// of a message.
+/// The end of a message: the values of those variables in a mode's condition that are only ever
+/// assigned constants.
 fn only_ever(program: &Program, mode: usize) -> String {
     let mut asked = BTreeSet::new();
     let when = program.modes[mode].when.iter();
@@ -333,7 +333,7 @@ impl Search<'_> {
                     then.ok().filter(|_| then == otherwise).ok_or(open)
                 }
             },
-            _ => unreachable!("terms stand as variables"),
+            _ => unreachable!("terms have been replaced by variables"),
         }
     }
 }

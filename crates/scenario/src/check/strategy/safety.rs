@@ -26,9 +26,9 @@ pub(super) fn check_reason(scope: &Scope<'_>) {
     }
 }
 
-/// Reports every mode without safety behaviours, and an unnecessary reason. No other behaviour may
-/// outweigh a safety behaviour: constant weights are checked now, expressions are limited at run
-/// time.
+/// Reports every mode without safety behaviours, and any unnecessary reason. No other behaviour may
+/// outweigh a safety behaviour: constant weights are checked here, and expressions are limited at
+/// run time.
 pub(super) fn check(scope: &Scope<'_>, program: &mut Program) {
     let is_unsafe = program.unsafe_because.is_some();
     let mut is_lacking = false;
@@ -94,8 +94,8 @@ fn hold_below_guards(scope: &Scope<'_>, program: &mut Program) {
 }
 
 impl Behaviour {
-    /// Whether this is a safety behaviour that always works: for the whole field or all other
-    /// boats, without a condition or an end, with a weight and effective numbers.
+    /// Whether this is a safety behaviour that always works: it covers the whole field or all other
+    /// boats, has no condition and no end, and has a positive weight and effective numbers.
     pub fn is_guard(&self) -> bool {
         matches!(self.task, Task::OpRegion(_) | Task::AvoidCollision(_))
             && self.no_guard_since().is_none()

@@ -10,7 +10,7 @@ use crate::strategy::{Expression, Fact, Kind, Measure, Named, Place, SHARED_MAX,
 /// Maximum number of variables of a program.
 const MOST: usize = 1000;
 
-/// Checks the variables, by name.
+/// Checks the variables, in order of name.
 pub(super) fn variables(document: &Document<raw::Strategy>) -> Vec<Variable> {
     let given = &document.raw.variables;
     let scope = Scope {
