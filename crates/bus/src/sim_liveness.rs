@@ -93,7 +93,7 @@ impl SimLiveness {
         }
     }
 
-    /// Chooses a sim that is present now, whichever was ours before. Returns whether one is
+    /// Switches to a sim that is present now, whichever was in use before. Returns whether one is
     /// present.
     fn choose(&mut self) -> bool {
         (self.ours, self.is_replaced) = (self.tokens.first().cloned(), false);
