@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Minimum time between two moments with futures, s.
 const STEP_S: f64 = 5.0;
-/// Number of moments on each side whose futures are used for a change.
+/// Number of moments on each side of a change whose futures are used to estimate it.
 const WINDOW: usize = 3;
 /// Number of changes that get more futures in each round.
 const REFINED: usize = 6;
@@ -77,7 +77,7 @@ pub struct TurningPoint {
     pub change: Estimate,
     /// The events between these times.
     pub events: Vec<EventOutcome>,
-    /// What the boats involved in the events were doing, or else all boats.
+    /// The decisions of the boats involved in the events, or of all boats if there are no events.
     pub decisions: Vec<BoatDecision>,
 }
 
@@ -103,7 +103,7 @@ pub struct Added {
     pub team: String,
     /// The team's chance of winning.
     pub chance: Estimate,
-    /// The team's points minus those of the other.
+    /// The team's points minus the other team's.
     pub margin: Estimate,
 }
 

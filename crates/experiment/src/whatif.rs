@@ -46,7 +46,7 @@ pub struct Future {
 }
 
 impl Future {
-    /// The score at a time, or that of the moment before it.
+    /// The score at a time; before the moment, the score at the moment.
     fn score_at(&self, at_s: f64) -> [u32; 2] {
         let after = self.scores.partition_point(|(since_s, _)| *since_s <= at_s);
         self.scores[after.saturating_sub(1)].1
@@ -233,7 +233,7 @@ pub(crate) fn future_of(
 
 /// The seed of a future.
 pub fn seed_of(past: &Past, future: usize) -> u64 {
-    // Far from the seeds that people use, so that the first future does not equal a different
+    // Far from the seeds that people use, so that the first future is not the same as another
     // recorded game.
     past.scenario.seed.wrapping_add(1_000_003 + future as u64) & (i64::MAX as u64)
 }
