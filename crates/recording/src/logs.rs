@@ -101,7 +101,7 @@ impl Logs {
         self.tags.push((at_s, tagged.to_owned(), by.to_owned()));
     }
 
-    /// Adds an interval to all times, s.
+    /// Shifts all times by an interval, s.
     pub fn shift(&mut self, by_s: f64) {
         for (at_s, _) in self
             .values
@@ -338,7 +338,8 @@ impl Logs {
         }
     }
 
-    /// Reports a boat's changes since the previous frame.
+    /// Reports what changed since the previous frame: whether a boat is tagged, and which flag it
+    /// carries.
     fn tell_changes(
         &self,
         (before, now): (&Frame, &Frame),
