@@ -146,7 +146,7 @@ pub(crate) fn read_log(
     all.context("there is no log")
 }
 
-/// The table of the log: as written by the user, or of the boat in a log of another program.
+/// The log as a table: the user's own, or the boat's part of another program's log.
 fn sheet(log: &Path, (map, vehicle): (Option<&Map>, Option<&str>)) -> Result<Sheet> {
     if Format::of(log)? == Format::Csv && map.is_none() && vehicle.is_none() {
         return read_sheet(log);

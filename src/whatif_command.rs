@@ -78,7 +78,7 @@ struct Compared<'a> {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = recording_file::or_newest(args.file.as_deref())?;
-    let recording = recording_file::open(&file, "play on")?;
+    let recording = recording_file::open(&file, "continue")?;
     let past = past_at(&recording, args.at)
         .with_context(|| format!("cannot continue {}", file.display()))?;
     let teams = [("blue", &args.blue), ("red", &args.red)];

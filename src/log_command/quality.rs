@@ -21,7 +21,7 @@ pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
     progress.end();
     screen::print(&sum.to_string());
     json.map_or(Ok(()), |path| {
-        output_file::write_json(path, "the quality", &sum)
+        output_file::write_json(path, "the quality report", &sum)
     })
 }
 
