@@ -94,7 +94,7 @@ pub(super) fn operate(
         return Err("the game is no longer running".to_owned());
     };
     state.operating.begin(page, vehicle, &command)?;
-    // A stop uses every path, of which this query is one. The latest command counts.
+    // A stop uses every path, including this query. The latest command counts.
     let stop = StopCommand::of(&command);
     match stop {
         Some(stop) => shared.stops.stop(Some(name), stop),
