@@ -162,7 +162,8 @@ impl GameArgs {
 
 /// A game's result, with its settings.
 fn result_of(report: &Report) -> Result<serde_json::Value> {
-    let mut value = serde_json::to_value(&report.outcome).context("cannot encode the result as JSON")?;
+    let mut value =
+        serde_json::to_value(&report.outcome).context("cannot encode the result as JSON")?;
     value["run"] = serde_json::to_value(&report.run).context("cannot encode the result as JSON")?;
     Ok(value)
 }
