@@ -104,7 +104,7 @@ class Game:
         return native.rewards if self._reward is None else self._reward.rewards(actions), terminated, truncated
 
     def picture(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3). None except for "rgb_array"."""
+        """The game from above, (height, width, 3). None unless the render mode is "rgb_array"."""
         return draw(self.native.scene(0)) if self._render_mode == "rgb_array" else None
 
     def close(self) -> None:
