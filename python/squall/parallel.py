@@ -176,8 +176,9 @@ def parallel_env(
 
     With `team`, the agents are the boats of that team, and `opponents` are as in the other environments. Without it, all boats are
     agents, and `opponents` is not allowed. An agent's `info` is its team's state of play, as for `TeamEnv`; its `counts` says whether
-    the agent's actions take effect, which they do not while a tagged boat drives home. `action_mask` is as for `BoatEnv`. With `state`, the environment also has `state()`
-    and `state_space`: the truth about the game. Raises ValueError with all faults of options and scenario files.
+    the agent's actions take effect, which they do not while a tagged boat drives home. `action_mask` is as for `BoatEnv`. With `state`,
+    the environment also has `state()` and `state_space`: the truth about the game. Raises ValueError with all faults of options and
+    scenario files.
     """
     if options.get("team") is not None:
         needs_no_policy(options, "one team's parallel_env")

@@ -85,7 +85,7 @@ pub(crate) fn begin(
         slots,
         is_closed: false,
     };
-    // The session drops its callback when it closes.
+    // A session that closes drops its callback, which ends this loop.
     let look = move || {
         while let Some(links) = watched.upgrade() {
             let rest = port.look(&links);

@@ -40,8 +40,7 @@ struct Shared {
 }
 
 impl StopClient {
-    /// A client without paths. It repeats a stop until the boats report it, for up to
-    /// `limit`.
+    /// A client without paths. It repeats a stop until the boats report it, for up to `limit`.
     ///
     /// # Errors
     /// If the system cannot start a thread.
