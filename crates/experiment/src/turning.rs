@@ -75,7 +75,7 @@ pub struct TurningPoint {
     pub chance: [f64; 2],
     /// The difference of the chances, with its 95 % interval.
     pub change: Estimate,
-    /// The events between these times.
+    /// The events around the change, from the moment before `from_s` to the moment after `to_s`.
     pub events: Vec<EventOutcome>,
     /// The decisions of the boats involved in the events, or of all boats if there are no events.
     pub decisions: Vec<BoatDecision>,
@@ -101,9 +101,9 @@ pub struct Added {
     pub vehicle: String,
     /// Its team.
     pub team: String,
-    /// The team's chance of winning.
+    /// The team's chance of winning minus its chance with the baseline.
     pub chance: Estimate,
-    /// The team's points minus the other team's.
+    /// The team's lead in points minus its lead with the baseline.
     pub margin: Estimate,
 }
 
@@ -122,7 +122,7 @@ struct Course {
 /// played. Returns `None` if `stop` was set.
 ///
 /// # Errors
-/// If the game cannot start, or a mind cannot be copied.
+/// If the recording contains no decision, the game cannot start, or a mind cannot be copied.
 pub fn turning_points(
     past: &Past,
     plan: &Plan,

@@ -43,7 +43,7 @@ impl IndexEntry {
     }
 }
 
-/// Consecutive messages in a chunk or outside chunks.
+/// A run of records: consecutive messages in one chunk or outside chunks.
 #[derive(Debug)]
 struct Stretch {
     /// The number of messages before it.

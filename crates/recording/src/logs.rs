@@ -154,9 +154,9 @@ impl Logs {
         sources.next().map(|(_, series)| series)
     }
 
-    /// The MCAP file of the game, whose logs must already be sorted. If `is_known`, it is the game
-    /// of this scenario; otherwise the scenario's boats and field are replaced with the logged
-    /// boats and a field around their tracks.
+    /// The game as an MCAP file. Call [`Logs::sort`] first. If `is_known`, it is the game of this
+    /// scenario; otherwise the scenario's boats and field are replaced with the logged boats and a
+    /// field around their tracks.
     ///
     /// # Errors
     /// If the logs do not belong to one game, or a boat is not in it.
