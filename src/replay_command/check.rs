@@ -21,7 +21,7 @@ pub(super) struct Verdict {
 /// Reruns the game; calls `tell` after every frame.
 pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Verdict> {
     if recording.header().info.pace == recording::logs::PACE {
-        bail!("MOOS logs do not contain the inputs of a game");
+        bail!("a recording made from logs does not contain the inputs of a game");
     }
     let scenario = recording.scenario();
     let mut contest = Contest::new(scenario, scenario.seed)?;
