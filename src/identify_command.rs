@@ -190,7 +190,7 @@ fn table(boat: &str, log: &str, fit: &Fit) -> String {
     }
     if let Some((speed_m_s, toward_deg)) = fit.current() {
         text.push_str(&format!(
-            "  current {speed_m_s:.2} m/s toward {toward_deg:.0}°: for trials, --current-m-s {speed_m_s:.2} --current-toward-deg {toward_deg:.0}\n"
+            "  current {speed_m_s:.2} m/s towards {toward_deg:.0}°: for trials, --current-m-s {speed_m_s:.2} --current-toward-deg {toward_deg:.0}\n"
         ));
     }
     if let Some((speed_m_s, from_deg)) = fit.wind() {
