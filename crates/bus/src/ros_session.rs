@@ -127,7 +127,7 @@ impl Deref for RosSession {
 }
 
 impl RosPublisher {
-    /// Whether the topic has a subscriber; messages without one need not be encoded.
+    /// Whether the topic has a subscriber. Without one, messages need not be encoded.
     pub fn is_heard(&self) -> bool {
         self.0.is_heard()
     }
