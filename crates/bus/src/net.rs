@@ -149,8 +149,8 @@ impl Net {
         Ok(config)
     }
 
-    /// The zenoh configuration of a leaf. It makes a single attempt to connect, and reconnects after
-    /// a link failure.
+    /// The zenoh configuration of a leaf. It makes a single attempt to connect, and reconnects
+    /// after a link failure.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
         if let Some(keys) = self
             .keys

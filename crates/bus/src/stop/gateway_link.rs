@@ -194,8 +194,8 @@ impl GatewayPath {
         })
     }
 
-    /// Tells the datagram thread to end. Drop waits for it, and tells
-    /// the connection's thread to end.
+    /// Tells the datagram thread to end. Drop waits for it, and tells the connection's
+    /// thread to end.
     pub(super) fn close(&self) {
         self.datagrams.close();
     }
