@@ -80,7 +80,7 @@ class Game:
         self.phase = Phase.NEW
 
     def reset(self, seed: int | None, random: np.random.Generator) -> None:
-        """Starts the game with this seed, or another one."""
+        """Starts the game with this seed. None: the first game if no reset has returned it, otherwise a new one."""
         if self.phase is Phase.CLOSED:
             check_phase(self.phase)
         if seed is not None:

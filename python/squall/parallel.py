@@ -76,13 +76,13 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
 
     @property
     def state_names(self) -> list[str]:
-        """The names of the values of the state, in order; empty without `state=True` and `reward`."""
+        """The names of the values of the state, in order; empty unless `state=True` or `reward` is given."""
         return self.native.state_names
 
     def state(self) -> NDArray[np.float32]:
         """The truth about the game from the view of its first agent; after the last step, at the end of the game.
 
-        Raises NotImplementedError without `state=True` and `reward`.
+        Raises NotImplementedError unless `state=True` or `reward` is given.
         """
         if not self.native.state_names:
             raise NotImplementedError("state() needs parallel_env(state=True)")

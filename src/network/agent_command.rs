@@ -31,7 +31,8 @@ pub(crate) struct Args {
     /// every decision, s; at most half of the game's patience_s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds)]
     policy_wait_s: f64,
-    /// Prints only errors, and exits when standard input closes
+    /// Prints only errors, and the faults of competition entries as JSON lines; exits when standard
+    /// input closes
     #[arg(long, hide = true)]
     for_parent: bool,
 }
