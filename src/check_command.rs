@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 }
 
-/// Requirements of a valid game that its boats cannot meet.
+/// Warnings about requirements that the boats of a valid game cannot meet.
 fn warnings(file: &Path, kind: Kind) -> Vec<String> {
     if kind != Kind::GAME {
         return Vec::new();

@@ -98,7 +98,7 @@ impl GameArgs {
         )
     }
 
-    /// Prints a remark if a rehearsal is the same as the game.
+    /// Prints a remark if `--rehearse` has no effect.
     pub(crate) fn remark_on_rehearsal(&self) -> Result<()> {
         let overrides = Overrides {
             simulate_all: false,
@@ -162,8 +162,9 @@ impl GameArgs {
 
 /// A game's result, with its settings.
 fn result_of(report: &Report) -> Result<serde_json::Value> {
-    let mut value = serde_json::to_value(&report.outcome).context("the result is not JSON")?;
-    value["run"] = serde_json::to_value(&report.run).context("the result is not JSON")?;
+    let mut value =
+        serde_json::to_value(&report.outcome).context("cannot encode the result as JSON")?;
+    value["run"] = serde_json::to_value(&report.run).context("cannot encode the result as JSON")?;
     Ok(value)
 }
 

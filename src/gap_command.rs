@@ -42,7 +42,7 @@ pub(crate) struct Args {
     /// Physics tick, s [default: 0.05]
     #[arg(long, value_name = "S", value_parser = tick)]
     tick_s: Option<f64>,
-    /// Plots the boat in the spread of the runs to this SVG file [default: LOG_gap.svg in the
+    /// Plots the boat against the spread of the runs to this SVG file [default: LOG_gap.svg in the
     /// current folder]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     );
     screen::print(&table(&title, &gap));
 
-    // What waves and gusts do by chance is no fault of the boat file.
+    // Chance effects of waves and gusts are not the boat file's fault.
     let mean = Setting {
         sea: without_chance(first.sea.clone()),
         ..first

@@ -146,7 +146,7 @@ pub(crate) fn read_log(
     all.context("there is no log")
 }
 
-/// The table of the log: as written by the user, or of the boat in a log of another program.
+/// The log as a table: the user's own, or the boat's part of another program's log.
 fn sheet(log: &Path, (map, vehicle): (Option<&Map>, Option<&str>)) -> Result<Sheet> {
     if Format::of(log)? == Format::Csv && map.is_none() && vehicle.is_none() {
         return read_sheet(log);
@@ -190,7 +190,7 @@ fn table(boat: &str, log: &str, fit: &Fit) -> String {
     }
     if let Some((speed_m_s, toward_deg)) = fit.current() {
         text.push_str(&format!(
-            "  current {speed_m_s:.2} m/s toward {toward_deg:.0}°: for trials, --current-m-s {speed_m_s:.2} --current-toward-deg {toward_deg:.0}\n"
+            "  current {speed_m_s:.2} m/s towards {toward_deg:.0}°: for trials, --current-m-s {speed_m_s:.2} --current-toward-deg {toward_deg:.0}\n"
         ));
     }
     if let Some((speed_m_s, from_deg)) = fit.wind() {

@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What was found: a line for each file and each boat.
+/// A summary of the logs: one line for each file and each boat.
 fn summary(files: &[Input], imported: &Imported) -> String {
     let mut text = String::new();
     for (file, format) in files.iter().zip(&imported.formats) {
@@ -117,13 +117,13 @@ fn summary(files: &[Input], imported: &Imported) -> String {
     text
 }
 
-/// The table for a fit of one boat: of the only one in the log, or of the named one.
+/// The table for fitting one boat: the only one in the log, or the named one.
 pub(crate) fn table_of(path: &Path, map: Option<&Map>, boat: Option<&str>) -> Result<String> {
     let (logs, boat) = logs_of(path, map, boat)?;
     Ok(import::table(&logs, &boat))
 }
 
-/// A log, and the name of its only boat or of the named one.
+/// A log, and the name of its only boat, or the given name.
 pub(crate) fn logs_of(
     path: &Path,
     map: Option<&Map>,

@@ -145,7 +145,7 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Prints the summary or the events, and writes all of it as JSON.
+/// Prints the summary or the events, and writes the whole summary as JSON if requested.
 fn summary(args: &Args, recording: &Recording, wants_page: bool) -> Result<Damaged> {
     let summary = Summary::of(recording);
     let names = Names::of(recording.scenario());

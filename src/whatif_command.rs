@@ -78,7 +78,7 @@ struct Compared<'a> {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let file = recording_file::or_newest(args.file.as_deref())?;
-    let recording = recording_file::open(&file, "play on")?;
+    let recording = recording_file::open(&file, "continue")?;
     let past = past_at(&recording, args.at)
         .with_context(|| format!("cannot continue {}", file.display()))?;
     let teams = [("blue", &args.blue), ("red", &args.red)];
@@ -141,7 +141,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// Checks that a recorded game can be continued.
 pub(crate) fn check(recording: &Recording) -> Result<()> {
     if recording.header().info.pace == recording::logs::PACE {
-        bail!("MOOS logs do not contain the inputs of a game");
+        bail!("a recording made from logs does not contain the inputs of a game");
     }
     recording.scenario().has_no_real_boats()?;
     Ok(())

@@ -1,4 +1,4 @@
-"""Runs a competition entry in a process of its own: `python -m squall.host FOLDER`.
+"""Runs a competition entry in a separate process: `python -m squall.host FOLDER`.
 
 An entry of the Maritime Capture the Flag competition has a class `solution` with a method `compute_action`. Without
 `--serve`, this program asks it once for each boat and shows the answers. `squall run --blue host:FOLDER` starts it with
@@ -49,7 +49,7 @@ GAME = {
     "score_max": 20.0,
     "has_disabled": True,
 }
-"""What the first request says of a game; these values are those of 2026."""
+"""The description of a game in the first request; these are the values of 2026."""
 
 Point = tuple[float, float]
 Numbers = dict[Any, Any]
@@ -97,7 +97,7 @@ class World:
         return sorted(others, key=lambda other: self._team(other) != self._team(boat))
 
     def _ends(self, name: str) -> tuple[float, float]:
-        """The values of a name that count as -1 and 1."""
+        """The values of the named quantity that are scaled to -1 and 1."""
         if name.endswith(("bearing", "heading")):
             return -180.0, 180.0
         most = {"speed": "top_m_s", "tagging_cooldown": "cooldown_s", "team_score": "score_max"}
@@ -212,7 +212,7 @@ class World:
         if numbers.size == 1 and numbers[0] == int(numbers[0]) and -ACTIONS <= numbers[0] < ACTIONS:
             return int(numbers[0]) % ACTIONS  # As in Python lists, -1 is the last.
         if numbers.size >= 2:
-            # Half a turn to either side is a turn to that side; more is the shorter way round.
+            # Turns of up to 180 degrees go to their own side; larger ones go the shorter way round.
             turn_deg = float(numbers[1])
             return [float(numbers[0]), turn_deg if abs(turn_deg) <= 180.0 else (turn_deg + 180.0) % 360.0 - 180.0]
         raise ValueError(f"the action is {action!r}, expected one of {ACTIONS}, or a speed and a turn")
@@ -262,7 +262,7 @@ class Entry:
         return module
 
     def _config(self, file: Path) -> Mapping[str, Any]:
-        """The entry's configuration; empty without one, or if it needs Pyquaticus itself, which may be missing."""
+        """The entry's configuration; empty if there is none, or if it imports a missing package such as Pyquaticus."""
         try:
             module = self._imported("gen_config", file) if file.is_file() else None
         except ImportError:
@@ -309,7 +309,7 @@ def reason(error: BaseException) -> str:
     own = globals().get("__file__", "<string>")  # Squall passes this program to Python as a string.
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != own]
     frames = [frame for frame in frames if "importlib" not in frame.filename and not frame.filename.startswith("<")]
-    # The entry's own line says more than that of a library that it calls.
+    # The entry's own line is more helpful than a line in a library that it calls.
     frames = [frame for frame in frames if frame.filename.startswith(os.getcwd() + os.sep)] or frames
     place = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}: " if frames else ""
     return f"{place}{type(error).__name__}: {error}".replace("\n", " ")[:300]
@@ -318,7 +318,7 @@ def reason(error: BaseException) -> str:
 def feed(requests: BinaryIO, lines: queue.Queue[bytes]) -> None:
     for line in requests:
         lines.put(line)
-    # The game is over, or its program is gone; the entry may be busy, and may have started processes of its own.
+    # The game is over, or its program is gone. The entry may be busy, and may have started other processes.
     if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
         os.killpg(os.getpgrp(), signal.SIGKILL)
     os._exit(0)

@@ -18,7 +18,7 @@ class Setup(TypedDict):
     helm: str | None
     decision_s: float | None
     decision_min_s: float
-    """How long an action holds at least, s, if `decision_s` is None."""
+    """Minimum time that an action holds, s, if `decision_s` is None."""
     episode_max_s: float | None
     starts: int | None
     team: str | None
@@ -126,7 +126,7 @@ class VectorEnvironment:
         """The events of a game's last step: name, time in s, boat, other boat, team; as in `squall.Event`."""
 
     def digest(self, game: int) -> str:
-        """The digest of a game's state: equal digests, equal games."""
+        """The digest of a game's state: equal digests mean equal games."""
 
     def scene(self, game: int) -> Scene:
         """A game seen from above; if it ended in the last step, as it was at its end."""
@@ -150,7 +150,7 @@ class SweepPlan:
 
     name: str
     digest: str
-    """Identifies the plan: equal digests, equal games. Independent of the location of the files."""
+    """Identifies the plan: equal digests mean equal games. Does not depend on where the files are."""
     points: int
     games_per_point: int
     games: int
@@ -199,7 +199,7 @@ class TournamentPlan:
 
     name: str
     digest: str
-    """Identifies the plan: equal digests, equal games. Independent of the location of the files."""
+    """Identifies the plan: equal digests mean equal games. Does not depend on where the files are."""
     games: int
 
     def records(self, begin: int, end: int, threads: int = 1) -> list[str]:

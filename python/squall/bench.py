@@ -41,7 +41,7 @@ def vector_step(game: str, games: int, *, copy: bool) -> Callable[[], None]:
         games, game=game, observation="pyquaticus", decision_s=None, opponents="policy", threads=1, seed=1, copy=copy
     )
     environment.reset()
-    # Drawn in advance: with a policy, numpy would not draw actions, so the cost does not count.
+    # Draw the actions in advance: a policy would not draw them with numpy, so that cost must not count.
     actions = np.random.default_rng(1).integers(0, 17, (256, environment.num_envs))
     turn = 0
 

@@ -34,7 +34,7 @@ BATCH = 50
 IN_FLIGHT = 2
 """Batches per CPU in progress or queued."""
 AHEAD = 16
-"""Batches per CPU that may be complete before the one that is due, and so wait in memory."""
+"""Maximum number of completed batches per CPU that wait in memory for earlier ones."""
 WAIT_S = 1.0
 """How long to wait for results before checking the cluster again, s."""
 LINE_EVERY_S = 30.0
@@ -215,7 +215,7 @@ def remark(text: str) -> None:
 
 def run(plan: Plan, study: Study[Result], task: Task[Result], arguments: argparse.Namespace) -> Exception | None:
     """Plays the remaining games until Ctrl-C or SIGTERM. Returns the error, if any; the study keeps all results before it."""
-    # Job schedulers end a job in this way.
+    # Job schedulers send SIGTERM to end a job.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     progress, failed = Progress(study.done, plan.games), None
     with contextlib.suppress(KeyboardInterrupt):

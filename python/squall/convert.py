@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 BYTES_MAX = 1 << 28
-"""Of one file, unpacked."""
+"""Maximum size of a file, unpacked."""
 SUPPORTED = (
     "policy_state.pkl of RLlib, a state_dict that torch.save wrote (CleanRL, simpleMARL), or a zip file of"
     " Stable-Baselines3"
@@ -88,7 +88,7 @@ def _parameter(data: np.ndarray, *_: object) -> np.ndarray:
 
 
 def _array_names() -> dict[tuple[str, str], Any]:
-    # Found by pickling with numpy itself, because the functions' modules have been renamed.
+    # Pickle with numpy itself to find the functions, because their modules have been renamed.
     found: dict[tuple[str, str], Any] = {("numpy", "ndarray"): np.ndarray, ("numpy", "dtype"): np.dtype}
     reconstruct = np.zeros(1).__reduce__()[0]
     scalar = np.float32(0).__reduce__()[0]
@@ -357,7 +357,7 @@ class Policy:
     left_out: list[str]
     activation: str
     picks: list[tuple[int, float, float]] | None
-    """For a turn and a speed, each as an output's index, a factor and an addend; None for discrete actions."""
+    """A turn and a speed, each as the index of an output, a factor and an addend; None for discrete actions."""
 
     @property
     def inputs(self) -> int:
@@ -487,11 +487,11 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("file", metavar="FILE", type=Path)
     parser.add_argument("--out", metavar="FILE", type=Path, help="the ONNX file to write [default: FILE.onnx]")
-    parser.add_argument("--activation", choices=ACTIVATIONS, help="of hidden layers [default: as the file implies]")
+    parser.add_argument("--activation", choices=ACTIVATIONS, help="activation of the hidden layers [default: as the file implies]")
     parser.add_argument("--observation", choices=KINDS, help="kind of observations [default: by their number]")
     parser.add_argument("--continuous", action="store_true", help="actions are a speed and a turn, from -1 to 1")
     parser.add_argument("--period-s", type=float, default=1.0, help="time between decisions, s [default: 1]")
-    parser.add_argument("--key", help="which table of weights, if the file has several")
+    parser.add_argument("--key", help="table of weights to use, if the file has several")
     given = parser.parse_args(arguments)
     try:
         print(convert(given), end="")

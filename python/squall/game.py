@@ -80,7 +80,7 @@ class Game:
         self.phase = Phase.NEW
 
     def reset(self, seed: int | None, random: np.random.Generator) -> None:
-        """Starts the game with this seed, or another one."""
+        """Starts the game with this seed. None: the first game if no reset has returned it, otherwise a new one."""
         if self.phase is Phase.CLOSED:
             check_phase(self.phase)
         if seed is not None:
@@ -104,7 +104,7 @@ class Game:
         return native.rewards if self._reward is None else self._reward.rewards(actions), terminated, truncated
 
     def picture(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3). None except for "rgb_array"."""
+        """The game from above, (height, width, 3). None unless the render mode is "rgb_array"."""
         return draw(self.native.scene(0)) if self._render_mode == "rgb_array" else None
 
     def close(self) -> None:

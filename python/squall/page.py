@@ -28,7 +28,7 @@ def program() -> str:
     named = os.environ.get("SQUALL")
     found = _found()
     if found is None:
-        where = "on PATH" if named is None else f"where the environment variable SQUALL says, {named!r}"
+        where = "on PATH" if named is None else f"at {named!r}, the path in the environment variable SQUALL"
         raise gymnasium.error.DependencyNotInstalled(
             f'render_mode "human" needs the program squall, which is not {where}: build it in a clone of the repository with'
             " `cargo build --release`, and put target/release on PATH or the program's path into SQUALL"

@@ -76,13 +76,13 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
 
     @property
     def state_names(self) -> list[str]:
-        """The names of the values of the state, in order; empty without `state=True` and `reward`."""
+        """The names of the values of the state, in order; empty unless `state=True` or `reward` is given."""
         return self.native.state_names
 
     def state(self) -> NDArray[np.float32]:
         """The truth about the game from the view of its first agent; after the last step, at the end of the game.
 
-        Raises NotImplementedError without `state=True` and `reward`.
+        Raises NotImplementedError unless `state=True` or `reward` is given.
         """
         if not self.native.state_names:
             raise NotImplementedError("state() needs parallel_env(state=True)")
@@ -111,7 +111,7 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
     def step(
         self, actions: dict[str, Any]
     ) -> tuple[Shown, dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
-        """Plays a step. Raises ValueError, and plays nothing, if an action is missing, outside the space or of an unknown agent.
+        """Plays a step. Raises ValueError, and plays nothing, if an action is missing, outside the space or for an unknown agent.
 
         After the end of the game, a step without actions returns empty dictionaries.
         """
@@ -145,7 +145,7 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
         return np.concatenate(rows)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3). None except for "rgb_array".
+        """The game from above, (height, width, 3). None unless the render mode is "rgb_array".
 
         With "human", Squall's page in a browser shows each game when it has ended: see the package's README.
         """
@@ -175,9 +175,10 @@ def parallel_env(
     """One game as PettingZoo's `ParallelEnv`.
 
     With `team`, the agents are the boats of that team, and `opponents` are as in the other environments. Without it, all boats are
-    agents, and `opponents` is not allowed. An agent's `info` is its team's state of play, as for `TeamEnv`, and in `counts` whether its
-    actions take effect: a tagged boat drives home. `action_mask` is that of `BoatEnv`. With `state`, the environment also has `state()`
-    and `state_space`: the truth about the game. Raises ValueError with all faults of options and scenario files.
+    agents, and `opponents` is not allowed. An agent's `info` is its team's state of play, as for `TeamEnv`; its `counts` says whether
+    the agent's actions take effect, which they do not while a tagged boat drives home. `action_mask` is as for `BoatEnv`. With `state`,
+    the environment also has `state()` and `state_space`: the truth about the game. Raises ValueError with all faults of options and
+    scenario files.
     """
     if options.get("team") is not None:
         needs_no_policy(options, "one team's parallel_env")

@@ -29,10 +29,10 @@ class Recordings:
     """The recordings of an environment."""
 
     def __init__(self, owner: object, native: _native.VectorEnvironment, render_mode: str | None = None) -> None:
-        """For the games of an environment, which may never be closed."""
+        """Manages the recordings of `owner`, an environment that may never be closed."""
         self._is_shown = render_mode == "human"
         self._native = native
-        # An environment that is collected, or an interpreter that ends, must not leave an incomplete file.
+        # An environment that is garbage-collected, or an interpreter that ends, must not leave an incomplete file.
         weakref.finalize(owner, native.end_recordings)
 
     def show(self) -> None:

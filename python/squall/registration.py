@@ -25,7 +25,7 @@ def register() -> None:
                 entry_point=entry_point,
                 vector_entry_point=vector_entry_point,
                 kwargs=kwargs,
-                # Fewer wrappers around each step; the tests perform both checks.
+                # Fewer wrappers around each step; the tests check the environments instead.
                 disable_env_checker=True,
             )
 

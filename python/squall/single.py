@@ -86,7 +86,7 @@ class _GameEnv(Recreated, gymnasium.Env[NDArray[np.float32], Any]):
         return self._shown(), float(rewards.mean()), terminated, truncated, self._info(self.native.standing(0))
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3). None except for "rgb_array".
+        """The game from above, (height, width, 3). None unless the render mode is "rgb_array".
 
         With "human", Squall's page in a browser shows each game when it has ended: see the package's README.
         """

@@ -155,8 +155,8 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
     def states(self) -> NDArray[np.float32]:
         """The truth from the view of each row's boat, (rows, values), for critics that know more than a policy.
 
-        With `row="team"` there is still one per boat: (games x boats, values). 0 for boats without actions. Empty without `state=True` and
-        `reward`.
+        With `row="team"` there is still one per boat: (games x boats, values). 0 for boats without actions. Empty unless `state=True` or
+        `reward` is given.
         """
         return self._shown(self.native.states)
 
@@ -167,7 +167,7 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
 
     @property
     def state_names(self) -> list[str]:
-        """The names of the values of a state, in order; empty without `state=True` and `reward`."""
+        """The names of the values of a state, in order; empty unless `state=True` or `reward` is given."""
         return self.native.state_names
 
     def reset(

@@ -22,7 +22,7 @@ onnx = pytest.importorskip("onnx")
 
 POLICIES = Path(__file__).parent / "policies"
 TOLERANCE = 1e-6
-"""Of logits, which are of the order of 1."""
+"""Tolerance of logits, which are of the order of 1."""
 
 
 def outputs(data: bytes, observations: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from squall import convert, host
 
 RECORDED = Path(__file__).parents[2] / "agent" / "tests" / "helm" / "pyquaticus" / "2026_3v3.json"
 TOLERANCE = 3e-6
-"""Of numbers from -1 to 1, which are passed with 24 bits."""
+"""Tolerance of numbers from -1 to 1, which are passed with 24 bits."""
 
 HEAD = "class solution:\n    def compute_action(self, agent_id, full_obs_normalized, full_obs, global_state):\n"
 
@@ -33,7 +33,7 @@ def entry_of(folder: Path, text: str, **more: str) -> Path:
 
 
 def asked(folder: Path, boat: int = 0, team: int = 0, **game: Any) -> Any:
-    """The answer of an entry, in a process of its own, to one request."""
+    """An entry's answer to one request, in a separate process."""
     first = {**host.GAME, "team": team, **game}
     request = {"number": 1, "boat": boat, "at_m": [50.0, 40.0], "heading_deg": 90.0, "observation": [0.5] * 67}
     lines = "".join(json.dumps(line) + "\n" for line in (first, request))

@@ -59,7 +59,7 @@ def test_it_is_said_what_is_missing(monkeypatch: pytest.MonkeyPatch, named: str 
     monkeypatch.delenv("SQUALL", raising=False)
     if named is not None:
         monkeypatch.setenv("SQUALL", named)
-    where = "on PATH" if named is None else "where the environment variable SQUALL says, '/nowhere/squall'"
+    where = "on PATH" if named is None else "at '/nowhere/squall', the path in the environment variable SQUALL"
     with pytest.raises(gymnasium.error.DependencyNotInstalled, match=f"the program squall, which is not {where}"):
         squall.TeamEnv(render_mode="human")
 

@@ -11,7 +11,7 @@ use recording::FRAME;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Prints the figures for all games combined, and writes them as JSON.
+/// Prints the figures for all games combined, and writes them as JSON if requested.
 pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
     let mut sum = Quality::default();
     let mut progress = Progress::of(0, "decisions");
@@ -21,7 +21,7 @@ pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
     progress.end();
     screen::print(&sum.to_string());
     json.map_or(Ok(()), |path| {
-        output_file::write_json(path, "the quality", &sum)
+        output_file::write_json(path, "the quality report", &sum)
     })
 }
 

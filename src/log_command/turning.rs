@@ -17,7 +17,7 @@ const FUTURES_PER_GAME: usize = 20;
 const CURVE_COLUMNS: usize = 60;
 
 pub(super) fn print(args: &Args, file: &Path) -> Result<ExitCode> {
-    let recording = recording_file::open(file, "play on")?;
+    let recording = recording_file::open(file, "continue")?;
     let past = whatif_command::past(&recording)
         .with_context(|| format!("cannot continue {}", file.display()))?;
     let out = args

@@ -22,15 +22,17 @@ pub(crate) struct Args {
     /// Strategy to follow instead of the one in the sim's scenario: a file or a name
     #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
-    /// Python interpreter, and a competition entry that strategies may run with it, whose path is
-    /// written as in the strategy; may be repeated. An agent runs no other programs named by a sim
+    /// Python interpreter, and the competition entry that strategies may run with it; the path must
+    /// be exactly as in the strategy; may be repeated. An agent runs no other program that a sim
+    /// names
     #[arg(long, num_args = 2, value_names = ["PYTHON", "PATH"])]
     host: Vec<String>,
     /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at
     /// every decision, s; at most half of the game's patience_s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds)]
     policy_wait_s: f64,
-    /// Prints only errors, and exits when standard input closes
+    /// Prints only errors, and the faults of competition entries as JSON lines; exits when standard
+    /// input closes
     #[arg(long, hide = true)]
     for_parent: bool,
 }

@@ -49,8 +49,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// One row for each objective function, course and speed; then the sums, of which the helm chooses
-/// the largest.
+/// One row for each objective function, course and speed; then the sums. The helm chooses the
+/// largest sum.
 fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()> {
     let mut csv = csv::Writer::from_path(path)?;
     csv.write_record([

@@ -18,7 +18,7 @@ pub(crate) fn report(
     vehicle: VehicleId,
     question: HelmQuestion,
 ) -> Result<Option<HelmReport>> {
-    let question = serde_json::to_vec(&question).context("a question is JSON")?;
+    let question = serde_json::to_vec(&question).context("cannot encode the question as JSON")?;
     let key = topic::helm(&observer.game, &observer.info.scenario, vehicle);
     let Some(answer) = observer.bus.ask_node(&key, question, bus::ANSWER)? else {
         return Ok(None);

@@ -86,7 +86,7 @@ pub(crate) enum Command {
     /// Creates keys for untrusted networks: they encrypt links and define each node's rights.
     #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
-    /// Lists the games on the network with their scores.
+    /// Lists the games on the network and their states.
     #[command(after_help = "Examples:\n  squall list\n  squall list --connect tcp/10.0.0.5:7447")]
     List(list_command::Args),
 }

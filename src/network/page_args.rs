@@ -74,7 +74,7 @@ impl PageArgs {
             self.listen,
             Page::open(self.settings(self.listen.unwrap_or(usual), stop)?),
         ) {
-            // A different page already uses the port.
+            // The default port is taken, perhaps by another page.
             (None, Err(PageError::Listen { .. })) => {
                 Page::open(self.settings(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), stop)?)
             }

@@ -239,7 +239,7 @@ fn faults_of(line: &str) -> Option<EntryFaults> {
 }
 
 /// The number of boats for one agent process: the requested number, or more if this would start too
-/// many processes for the machine. The game is the same.
+/// many processes for the machine. This does not affect the game.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))
@@ -286,8 +286,8 @@ fn start_agents(
     crews.map(start).collect()
 }
 
-/// Shows the sim's progress until it reports the result or exits. If the requested page is missing,
-/// no game starts.
+/// Shows the sim's progress until it reports the result or exits. If the page fails before the game
+/// has started, no game is played.
 fn follow(
     messages: &Receiver<ProgressMessage>,
     (sim, mut page, token): (&mut ChildProcess, Option<&mut ChildProcess>, Option<&Token>),

@@ -53,9 +53,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Data received since the screen was last updated.
+/// Data received from the game.
 #[derive(Default)]
 struct Seen {
+    /// The newest frame; `None` once it has been shown.
     frame: Option<Frame>,
     /// Number of frames so far.
     count: u64,
@@ -124,7 +125,7 @@ fn sentence(scenario: &Scenario, logged: &Logged) -> String {
 /// Measures frames and simulated seconds per second since the last reading.
 struct Meter {
     then: Instant,
-    /// Time of the last reading; `None` before the first.
+    /// Simulated time of the last reading; `None` before the first.
     sim: Option<SimTime>,
     frames: u64,
 }

@@ -21,7 +21,7 @@ pub(super) struct Verdict {
 /// Reruns the game; calls `tell` after every frame.
 pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Verdict> {
     if recording.header().info.pace == recording::logs::PACE {
-        bail!("MOOS logs do not contain the inputs of a game");
+        bail!("a recording made from logs does not contain the inputs of a game");
     }
     let scenario = recording.scenario();
     let mut contest = Contest::new(scenario, scenario.seed)?;
@@ -65,7 +65,7 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
             let tick = recorded.stamp.seq * ticks;
             let at_s = recorded.stamp.valid_ns.as_s();
             let from = format!("DIFFERENT from tick {tick} on ({at_s:.1} s)");
-            let text = format!("{from}: {what} was {then}, in the rerun it is {now}\n");
+            let text = format!("{from}: {what} was {then}, but is {now} in the rerun\n");
             return Ok(Verdict {
                 is_same: false,
                 text,
@@ -105,7 +105,7 @@ pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Ver
         format!("{same}, digest {again}\n")
     } else {
         format!(
-            "DIFFERENT at the end: {frames} frames agree, but the digest was {recorded}, in the rerun it is {again}\n"
+            "DIFFERENT at the end: {frames} frames agree, but the digest was {recorded} and is {again} in the rerun\n"
         )
     };
     Ok(Verdict { is_same, text })

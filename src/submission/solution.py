@@ -10,7 +10,7 @@ import struct
 import numpy as np
 
 OBSERVATION = "@OBSERVATION@"  # what the network was trained with
-OUTPUT = "@OUTPUT@"  # the network's output with the action
+OUTPUT = "@OUTPUT@"  # the network's output that holds the action
 CONTINUOUS = @CONTINUOUS@  # whether its actions are a turn and a speed, or one of several
 ACTIONS = None  # a table of its actions, each a fraction of the top speed and a turn in degrees
 SAMPLED = @SAMPLED@  # whether actions are sampled from the network's probabilities
@@ -62,7 +62,8 @@ def observed(numbers):
         return numbers
     if OBSERVATION == "pyquaticus":
         return numbers[~disabled]
-    # Of 2023: without scores, and distances relative to 10 m more, or to half the field for the scrimmage line.
+    # The observations of 2023 have no scores. Distances are relative to 10 m more, or to half the field for the
+    # scrimmage line.
     most_m = np.full(numbers.size, DIAGONAL_M + 10.0)
     most_m[13] = 80.0
     scaled = ((numbers + 1.0) * (DIAGONAL_M / most_m) - 1.0).astype(np.float32)

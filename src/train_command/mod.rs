@@ -148,7 +148,8 @@ fn stopped(when: &str, samples: u64) -> String {
     format!("stopped {when} {samples} samples{next}")
 }
 
-/// The strategy whose helm uses the policy in the last stage, or the one beside the training file.
+/// The strategy whose helm uses the policy: that of the last stage that names one or, by default,
+/// `policy.toml` in the folder of strategies next to the training file's folder.
 fn base(file: &Path, training: &Training) -> PathBuf {
     let helm = training
         .stage

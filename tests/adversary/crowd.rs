@@ -16,8 +16,8 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Two limits on the sim's open files; each crowd has 50 % more connections. They have a test each,
-/// because each mostly waits for two minutes.
+/// Two limits on the sim's open files; each crowd has 50 % more connections. Each limit has its own
+/// test, because a test mostly waits, for about two minutes.
 pub(crate) const MANY_FILES: usize = 1024;
 pub(crate) const FEW_FILES: usize = 128;
 /// The start of a TLS handshake (RFC 8446) that announces 512 bytes.

@@ -68,7 +68,7 @@ fn otter(name: &str, more: &[&str]) -> (Columns, Columns) {
     (want, columns(&dir.path().join("out.csv")))
 }
 
-/// The largest distance from the reference, divided by the distance sailed (at least one metre).
+/// The largest distance from the reference, divided by the distance travelled (at least one metre).
 fn position_error(want: &Columns, got: &Columns) -> f64 {
     assert_eq!(want["t"].len(), got["t_s"].len());
     let mut sailed_m = 0.0;

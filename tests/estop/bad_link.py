@@ -265,7 +265,7 @@ def hosts_of(texts):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--host", action="append", required=True, metavar="NAME=NAMESPACE:ADDRESS",
-                        help="a machine, once for each of them; all addresses in one network of 24 bits")
+                        help="a machine; may be repeated; all addresses must be in one /24 network")
     parser.add_argument("--delay-ms", type=float, default=0.0, help="one-way delay [0]")
     parser.add_argument("--loss-pct", type=float, default=0.0, help="percentage of packets that are lost [0]")
     parser.add_argument("--rate-mbit", type=float, help="rate limit of each direction between two hosts [none]")

@@ -46,11 +46,11 @@ FALSE_SHARE = 0.01
 # Maximum delay of the operator's view, s.
 SHOWN_S = 3.0
 TARGETS = ("blue_one", "all", "red_one", "all")
-# Lateness of a packet that the emulated link does not report, ms.
+# Lateness of the emulated link up to which it is not reported, ms.
 LINK_LATE_MS = 5.0
 # Extra time that copies of a stop may take, beyond the network's delay, s.
 SETTLE_S = 0.1
-# Maximum number of failed attempts per valid one, because the boats do not stay under way.
+# Maximum number of failed attempts per valid one: an attempt fails if the boats are not under way.
 VAIN_MAX = 5
 PINGS = 400
 TELL_DELAYS_MS = (0.0, 50.0, 150.0, 300.0)

@@ -10,7 +10,7 @@ import sys
 import time
 
 EVERY_S = 0.002
-# Shorter stalls occur on every machine, ms.
+# Minimum duration of a reported stall, ms. Shorter ones occur on every machine.
 STALL_MS = 5.0
 
 

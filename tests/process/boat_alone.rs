@@ -42,7 +42,7 @@ impl Afloat {
         stream
             .write_all(b"$PSEAC,T,0,43,0,*3B\r\n")
             .expect("a command");
-        wait_within(LIMIT, "the boat sails", || !self.is_still());
+        wait_within(LIMIT, "the boat is under way", || !self.is_still());
         drop(stream);
         std::thread::sleep(Duration::from_secs(2));
         assert!(!self.is_still(), "it continues with no program connected");

@@ -123,7 +123,7 @@ impl Loop {
     /// Starts a boat that is under way, with these options for emulator and gateway.
     pub(crate) fn of(emulator: &[&str], gateway: &[&str]) -> Loop {
         let all = Loop::begin(emulator, &[&["--arm"], gateway].concat());
-        all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
+        all.wait(LIMIT, "the boat is under way", |boat| boat.0 > 0.6);
         all
     }
 
@@ -211,7 +211,7 @@ impl Loop {
         wait_until("it can be armed", || {
             self.ask(&OperatorCommand::Arm).refused.is_none()
         });
-        self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
+        self.wait(LIMIT, "it is under way again", |boat| boat.0 > 0.6);
     }
 
     /// Ends the gateway, because the boat serves one program at a time.

@@ -404,11 +404,11 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
         (&["log", &file, "--events"], "is the recording of a gateway"),
         (
             &["replay", "--check", &file],
-            "not a recording of a game: it is of a gateway",
+            "not a recording of a game: it is a recording of a gateway",
         ),
         (
             &["gateway", "replay", &path.display().to_string()],
-            "not a recording of a gateway: it is of a game",
+            "not a recording of a gateway: it is a recording of a game",
         ),
     ] {
         let said = all_output(squall(args));

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Plays one long game with everything enabled, and reports growth: memory, file descriptors, threads, latency.
 
-`squall run` with emulated boats behind gateways, an open page, a recording; and `squall watch` beside it. Every minute
-it prints a line with the resident memory of every process, descriptors, threads, and the duration of requests; it also
-acts as the operator: each boat is disarmed and armed again. At the end, each figure's slope over the run is compared
-with a limit: if it exceeds the limit, a process has died or the recording is incomplete, the exit code is 1.
+It runs `squall run` with emulated boats behind gateways, an open page and a recording, and `squall watch` beside it.
+Every minute it prints a line with the resident memory of every process, descriptors, threads, and the duration of
+requests; it also acts as the operator: each boat is disarmed and armed again. At the end, each figure's slope over the
+run is compared with a limit. The exit code is 1 if a slope exceeds its limit, a process has died, or the recording is
+incomplete.
 
 Linux, Python 3.9, no packages. CONTRIBUTING.md explains how to run it overnight.
 """

@@ -6,8 +6,8 @@
 //! and reports. Without keys, all other nodes have the same rights; with keys, each has the rights
 //! of its role.
 //!
-//! Topics that the hub forwards are spelled out here; nodes cannot invent them. zenoh 1.10 panics,
-//! which kills the sim, if it has to send a key of more than 65535 bytes.
+//! Topics that the hub forwards are spelled out here, so that nodes cannot invent any. zenoh 1.10
+//! would panic, and kill the sim, if it had to send a key longer than 65535 bytes.
 
 use crate::keys::Identity;
 use messages::topic::{self, GameName};
@@ -68,8 +68,8 @@ const ANYBODY: Rights = Rights {
     ],
     answers: &["helm/{boat}", "operate/{boat}"],
 };
-/// The agents of a team and policies that propose actions to them: no true state, and nothing from
-/// other teams.
+/// A team's agents, and policies that propose actions to them. They receive neither the true state
+/// nor other teams' pictures and messages.
 const TEAM: Rights = Rights {
     publishes: &[
         "order/{team}/*",
@@ -157,7 +157,7 @@ pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
         .any(|pattern| pattern.split('/').next() == kind)
 }
 
-/// The rules for nodes with these rights, for their teams and boats.
+/// Nodes with the same rights, and the teams and boats that these rights cover.
 struct Subject {
     id: String,
     rights: &'static Rights,
@@ -251,7 +251,7 @@ impl Subject {
     }
 }
 
-/// The subjects that a game knows, with or without keys.
+/// The subjects of a game, with or without keys.
 fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
     let names = |boats: Vec<&Vehicle>| -> Vec<String> {
         boats.into_iter().map(|boat| boat.name.clone()).collect()
@@ -311,7 +311,7 @@ fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
     subjects
 }
 
-/// zenoh's setting `access_control` for the hub of a game, with or without keys.
+/// zenoh's `access_control` setting for the hub of a game, with or without keys.
 pub(crate) fn control(game: &GameName, scenario: &Scenario, has_keys: bool) -> Value {
     let all = subjects(scenario, has_keys);
     let mut rules = Vec::new();

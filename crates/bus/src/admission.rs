@@ -5,7 +5,7 @@
 //! TLS listener (1.10, `tls-listener` 0.11) needs more: once the process has run out of file
 //! descriptors, the listener only tries to accept and closes none of its connections, so it would
 //! never recover. When descriptors run short, the port is closed briefly and the reserved
-//! descriptors are lent to connections accepted already. The listener then has nothing more to
+//! descriptors are lent to connections already accepted. The listener then has nothing more to
 //! accept, and closes the ended ones.
 
 use crate::descriptor::{self, Ends, Kind};
@@ -85,7 +85,7 @@ pub(crate) fn begin(
         slots,
         is_closed: false,
     };
-    // The session drops its callback when it closes.
+    // A session that closes drops its callback, which ends this loop.
     let look = move || {
         while let Some(links) = watched.upgrade() {
             let rest = port.look(&links);

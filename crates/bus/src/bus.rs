@@ -58,7 +58,7 @@ pub struct Bus {
     pub(crate) is_on_this_machine: bool,
 }
 
-/// Operations that need no token, keys or callback are those of the session.
+/// Operations that need no token, keys or callback are methods of the session.
 impl Deref for Bus {
     type Target = dyn Session;
 
@@ -180,7 +180,7 @@ impl Bus {
     }
 
     /// Calls `receive` with the key of every node under `key` that appears (`true`) or leaves,
-    /// starting with the nodes present.
+    /// starting with the nodes already present.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -205,7 +205,7 @@ impl Bus {
 }
 
 impl Publisher {
-    /// Whether the key has a subscriber; messages without one need not be encoded.
+    /// Whether the key has a subscriber. Without one, messages need not be encoded.
     pub fn is_heard(&self) -> bool {
         self.0.is_heard()
     }

@@ -20,8 +20,7 @@ pub fn suspended() -> Duration {
     runtime().suspended()
 }
 
-/// Sleeps if there is no condition to wait for: between two attempts, or between two screen
-/// updates.
+/// Sleeps between two attempts or two screen updates, where there is no condition to wait for.
 pub fn rest(time: Duration) {
     runtime().sleep(time);
 }

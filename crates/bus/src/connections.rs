@@ -1,5 +1,5 @@
-//! The open connections of a server with limited slots: a new connection always gets one, if
-//! necessary by evicting the connection that has been idle longest.
+//! The open connections of a server with a limited number of slots. A new connection always gets
+//! one; if none is free, another connection is evicted.
 
 use parking_lot::Mutex;
 use std::collections::BTreeMap;

@@ -24,7 +24,7 @@ type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 /// if it requires an unknown token, or if the session is closed.
 ///
 /// # Panics
-/// Never: a control is JSON.
+/// Never: every control can be encoded as JSON.
 pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusError> {
     let key = topic::control(game);
     let reply: Option<ControlReply> =
@@ -54,7 +54,7 @@ fn stop(bus: &Bus, key: &str, control: Control) -> Result<Option<ControlReply>, 
         );
         answered.wait(STOP_ANSWER, Option::is_some);
         match answered.visit(Option::take) {
-            // Observers may stop a game, too, but may not query the sim.
+            // Observers may also stop a game, but they may not query the sim.
             Some(Err(BusError::NotAllowed { .. })) if said < SAID_UNASKED => {
                 clock::rest(STOP_ANSWER)
             }

@@ -26,8 +26,7 @@ pub(crate) enum Kind {
 /// # Errors
 /// If the system provides no list, or no descriptor is left to read it.
 pub(crate) fn all() -> io::Result<Vec<RawFd>> {
-    // Linux has the first, macOS and the BSDs the second. If neither exists, links keep their
-    // linger time and the port keeps zenoh's limits.
+    // If neither exists, links keep their linger time and the port keeps zenoh's limits.
     let folder = std::fs::read_dir(FOLDERS[0]).or_else(|_| std::fs::read_dir(FOLDERS[1]))?;
     Ok(folder
         .flatten()
@@ -35,7 +34,7 @@ pub(crate) fn all() -> io::Result<Vec<RawFd>> {
         .collect())
 }
 
-/// A descriptor as a socket, whatever its kind: the system checks that at each call.
+/// Borrows a descriptor as a socket, whatever its kind: the system checks the kind at each call.
 #[expect(
     unsafe_code,
     reason = "zenoh does not expose its sockets: only their numbers can be found"

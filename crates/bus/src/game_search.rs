@@ -84,8 +84,8 @@ impl<'a> GameSearch<'a> {
         }
     }
 
-    /// Retries until it succeeds, times out or fails for good; reports what is missing whenever
-    /// this changes.
+    /// Repeats `attempt` until it succeeds, fails for good or the search times out. Calls `tell`
+    /// with what is missing whenever that changes.
     ///
     /// # Errors
     /// [`NotFound`] names what was still missing at the end.

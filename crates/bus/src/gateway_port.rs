@@ -1,5 +1,5 @@
-//! Queries to a gateway at its own control port, with or without a game: lines of JSON over TCP,
-//! each a request or an answer as on the network (`token`).
+//! Queries to a gateway at its own control port, with or without a game: lines of JSON over TCP.
+//! Each is a request or an answer in the network's format (see `token`).
 
 use crate::{BusError, Token, clock, token};
 use messages::external::{GatewayCommand, OperatorReply};

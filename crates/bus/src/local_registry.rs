@@ -23,8 +23,8 @@ pub struct Entry {
     pub pid: u32,
     /// The game's token, for processes of the same user, which may read the file.
     pub token: Option<String>,
-    /// Whether the game only simulates the water for emulated boats; commands use such a game only
-    /// by name.
+    /// Whether the game only simulates the water for emulated boats; commands select such a game
+    /// only by name.
     #[serde(default)]
     pub is_water: bool,
 }

@@ -37,8 +37,9 @@ const LINKS: [(&str, &str); 5] = [
 ];
 
 /// How a hub treats messages from other nodes. All are dropped if they would have to wait for their
-/// outgoing link. An answer has the settings of its query, and only the queue of this priority has
-/// space for the longest answers: a scenario with a network has 216 kB.
+/// outgoing link. An answer inherits the settings of its query. The longest answers need the
+/// priority `data_low`, because only its queue has space for them: a scenario with a network has
+/// 216 kB.
 fn qos(game: &GameName) -> String {
     let long = [
         topic::scenario(game),
@@ -52,9 +53,9 @@ fn qos(game: &GameName) -> String {
     .to_string()
 }
 
-/// Limits of a hub for data from others: a helm report fits into a message of 2 MB, a join request
-/// into a query of 64 kB, the orders for a thousand boats into 256 kB. The last limit is the time
-/// for a connecting node to identify itself.
+/// A hub's limits for other nodes. A helm report fits into a message of 2 MB, a join request into a
+/// query of 64 kB, and the orders for a thousand boats into 256 kB. A connecting node has
+/// `ACCEPT_MS` to identify itself.
 const MESSAGE_MAX: usize = 1 << 21;
 const QUESTION_MAX: usize = 1 << 16;
 const PUBLISHED_MAX: usize = 1 << 18;
@@ -148,8 +149,8 @@ impl Net {
         Ok(config)
     }
 
-    /// The zenoh configuration of a leaf. It keeps trying to connect, and reconnects after a link
-    /// failure.
+    /// The zenoh configuration of a leaf. It makes a single attempt to connect, and reconnects
+    /// after a link failure.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
         if let Some(keys) = self
             .keys
@@ -202,9 +203,8 @@ impl Net {
             check_threads_for_keys()?;
             let [authority, certificate, key] = keys.files();
             let tls = json!({
-                // Verify names, although addresses on a dock change: besides ours, zenoh (1.10.2)
-                // trusts the public authorities, none of which certifies `localhost` or private
-                // addresses.
+                // Verify names, even though local addresses change: zenoh (1.10.2) also trusts the
+                // public authorities. None of these certifies `localhost` or private addresses.
                 "root_ca_certificate": authority, "enable_mtls": true, "verify_name_on_connect": true,
                 "listen_certificate": certificate, "listen_private_key": key,
                 "connect_certificate": certificate, "connect_private_key": key,
@@ -256,12 +256,12 @@ fn with_handshake_time(endpoint: String) -> String {
     }
     let separator = if endpoint.contains('#') { ';' } else { '#' };
     // The TLS listener has a separate timeout besides `accept_timeout`. It also waits 0.1 s after
-    // each failed handshake, when no other node can connect; the build settings in
+    // each failed handshake, during which no other node can connect; the build settings in
     // `.cargo/config.toml` remove that.
     format!("{endpoint}{separator}tls_handshake_timeout_ms={ACCEPT_MS}")
 }
 
-/// The number of nodes for which a hub with these open files has space.
+/// The number of nodes that a hub with this limit on open files has space for.
 pub(crate) fn nodes_max(files: OpenFiles) -> usize {
     usize::try_from(files.usual / 4).map_or(NODES_MAX, |nodes| nodes.min(NODES_MAX))
 }

@@ -1,11 +1,11 @@
-//! A hub's limit on open files. Some are reserved for when all others are in use.
+//! A hub's limit on open files. Some files are held in reserve until all others are in use.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
 /// The number reserved, if the system allows at least eight times as many.
 const KEPT: u64 = 128;
 
-/// The limits of this process, in numbers of files.
+/// The limits on this process's open files.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenFiles {
     /// The limit in normal operation.
@@ -44,7 +44,7 @@ impl OpenFiles {
         self.most - self.usual
     }
 
-    /// Opens the reserve to this process, or closes it again.
+    /// Makes the reserve available to this process, or withdraws it.
     pub(crate) fn lend(self, is_lent: bool) {
         set(if is_lent { self.most } else { self.usual });
     }

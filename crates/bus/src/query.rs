@@ -57,7 +57,7 @@ impl Bus {
     }
 
     /// Like [`Bus::ask`], for a key at which other nodes answer. In a game without keys any node
-    /// may answer: if this node knows the token, only answers that prove the token count.
+    /// may answer: if this node knows the token, only answers that prove knowledge of it count.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed, or if only nodes without the token have answered.

@@ -40,9 +40,10 @@ impl RosSession {
         };
         let open = |mut config: zenoh::Config| {
             // A decision's messages follow each other closely. While one is being written, zenoh's
-            // sender waits up to two milliseconds for it; with this setting, less than one. From
-            // the sim to a subscriber of all topics the median is 0.5 ms instead of 0.7 ms.
-            // (Messages that are `express` overflow the queue of batches: most were lost.)
+            // sender waits up to two milliseconds for it; with this setting, less than one. The
+            // median from the sim to a subscriber of all topics is 0.5 ms instead of 0.7 ms.
+            // (Sending the messages as `express` was tried, but it overflowed the queue of batches,
+            // and most were lost.)
             set(
                 &mut config,
                 "transport/link/tx/queue/batching/time_limit",
@@ -126,7 +127,7 @@ impl Deref for RosSession {
 }
 
 impl RosPublisher {
-    /// Whether the topic has a subscriber; messages without one need not be encoded.
+    /// Whether the topic has a subscriber. Without one, messages need not be encoded.
     pub fn is_heard(&self) -> bool {
         self.0.is_heard()
     }

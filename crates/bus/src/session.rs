@@ -78,10 +78,11 @@ pub trait Session: Send + Sync {
         accept: &mut dyn FnMut(&Parcel) -> bool,
     ) -> Result<Option<Vec<u8>>, BusError>;
 
-    /// Declares a liveliness token under `key` until dropped or until the node dies.
+    /// Declares a liveliness token under `key`. It lasts until it is dropped or the node dies.
     fn show_alive(&self, key: String) -> Result<Declaration, BusError>;
 
-    /// Calls `receive` with every token under `key`, starting with the tokens present.
+    /// Calls `receive` with every token that appears or disappears under `key`, starting with the
+    /// tokens already present.
     fn watch_alive(&self, key: String, receive: OnToken) -> Result<Declaration, BusError>;
 
     /// Calls `receive` with every node that loses its link to this hub.

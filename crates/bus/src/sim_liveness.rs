@@ -93,7 +93,7 @@ impl SimLiveness {
         }
     }
 
-    /// Chooses a sim that is present now, whichever was ours before. Returns whether one is
+    /// Switches to a sim that is present now, whichever was in use before. Returns whether one is
     /// present.
     fn choose(&mut self) -> bool {
         (self.ours, self.is_replaced) = (self.tokens.first().cloned(), false);
@@ -182,7 +182,7 @@ impl SimWatch {
             && self.liveness.visit(SimLiveness::choose)
     }
 
-    /// Waits up to `limit` until our sim has lost its token or a different sim has appeared.
+    /// Waits up to `limit` until the token of our sim is missing or a different sim has appeared.
     /// Returns whether either has happened.
     pub fn is_lost(&self, limit: Duration) -> bool {
         self.liveness.wait(limit, |liveness| {

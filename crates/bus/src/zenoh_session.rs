@@ -269,7 +269,7 @@ impl Session for ZenohSession {
     }
 
     fn close(&self) {
-        // A session that fails to close is as gone as a closed one.
+        // A session that fails to close is no more usable than a closed one.
         drop(self.0.close().wait());
     }
 }

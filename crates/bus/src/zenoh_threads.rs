@@ -47,11 +47,8 @@ pub fn restart_for_keys() -> Result<(), BusError> {
     if has_threads_for_keys() {
         return Ok(());
     }
-    let refused = |error| {
-        BusError::Threads(format!(
-            "this program cannot be started again with it: {error}"
-        ))
-    };
+    let refused =
+        |error| BusError::Threads(format!("this program cannot be restarted with it: {error}"));
     let mut again = Command::new(std::env::current_exe().map_err(refused)?);
     Err(refused(
         again

@@ -1,4 +1,4 @@
-//! Command line arguments for how a process reaches a game: its address, name, keys and token.
+//! Command line arguments that say how a process reaches a game: address, name, keys and token.
 
 use crate::explain::UsageError;
 use crate::number::endpoint;
@@ -98,8 +98,10 @@ pub struct LeafArgs {
 }
 
 impl LeafArgs {
-    /// The gateways on this machine that a command may address. For a game elsewhere, these are
-    /// that game's gateways. A stop addresses too many gateways rather than too few.
+    /// The gateways on this machine that a command may address. If both the arguments and a gateway
+    /// name a game, it must be the same one. Otherwise the gateway counts unless the arguments
+    /// select a game elsewhere; a stop includes it even then, since it should reach too many boats
+    /// rather than too few.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
         let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {

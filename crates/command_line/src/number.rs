@@ -95,8 +95,8 @@ pub fn significant(number: f64) -> String {
     format!("{:.decimals$}", text.parse().unwrap_or(number))
 }
 
-/// Lets all options take negative numbers, so that their parsers report the allowed range; clap
-/// would report an unknown option.
+/// Lets all options take negative numbers, so that their parsers report the allowed range.
+/// Otherwise clap would report an unknown option.
 pub fn with_negative_numbers(command: Command) -> Command {
     command
         .mut_args(|arg| {

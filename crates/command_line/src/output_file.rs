@@ -28,8 +28,8 @@ pub fn check(path: &Path, what: &str) -> Result<()> {
 
 /// Writes a value as formatted JSON.
 pub fn write_json(path: &Path, what: &str, value: &impl Serialize) -> Result<()> {
-    let text =
-        serde_json::to_string_pretty(value).with_context(|| format!("{what} is not JSON"))?;
+    let text = serde_json::to_string_pretty(value)
+        .with_context(|| format!("cannot encode {what} as JSON"))?;
     write(path, what, text + "\n")
 }
 

@@ -221,7 +221,7 @@ fn unknown(word: &str, kind: Kind, beside: Option<&Path>) -> anyhow::Error {
     anyhow!("no {kind} named {word:?}{list}")
 }
 
-/// The places where a file of the given kind is accepted.
+/// Advice on where a file of the given kind can be used.
 fn where_it_goes(kind: Kind) -> String {
     let place = match kind.name() {
         "game" => "play it with squall run",

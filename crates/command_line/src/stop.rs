@@ -27,8 +27,8 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// Ends the process soon after the flag is set, even if it is still busy or waits for the network:
-/// for commands whose files are complete whenever they end.
+/// Ends the process soon after the flag is set, even if it is still busy or waiting for the
+/// network. It suits commands whose files are complete whenever they end.
 pub fn exit_when_late(stop: &Arc<AtomicBool>) {
     when_late(stop, || std::process::exit(130));
 }

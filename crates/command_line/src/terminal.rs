@@ -8,7 +8,7 @@ use primitives::printable;
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 
-/// The first error on standard output, except one caused by its reader closing it.
+/// The first error on standard output, unless its reader has closed it.
 static OUTPUT_ERROR: OnceLock<std::io::Error> = OnceLock::new();
 
 /// Checks that everything printed so far was written. `main` calls it last, so that a full disk is
@@ -57,7 +57,8 @@ pub fn set_colour(choice: clap::ColorChoice) {
     choice.write_global();
 }
 
-/// Writes control sequences and a string, without its colours if they cannot be shown.
+/// Writes control sequences and a string, without its colours if they cannot be shown. Returns
+/// whether the output is still open.
 fn is_written(control: &str, text: &str) -> bool {
     let mut out = std::io::stdout().lock();
     let steered = out.write_all(control.as_bytes());

@@ -28,9 +28,9 @@ impl Estimate {
         assert!(count > 0, "a mean needs values");
         let (mean, squares) = mean_and_squares(observations);
         let degrees = count as f64 - 1.0;
-        // Observations are seeds: all games with the same seed have the same sea, which may favour
-        // an entry from both sides and against all opponents. The interval covers other seeds, not
-        // other opponents, which are chosen, not drawn.
+        // Each seed is one observation: all its games have the same sea, which may favour an entry
+        // from both sides and against all opponents. The interval covers other seeds but not other
+        // opponents, because opponents are not chosen at random.
         let quantile = quantile(degrees).filter(|_| count >= OBSERVATIONS_MIN);
         let half = quantile.map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate {

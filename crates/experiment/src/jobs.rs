@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// Maximum number of threads per core: more would only take turns.
 const PER_CORE_MAX: usize = 4;
 
-/// Maximum number of games of an experiment, whose results are kept in memory.
+/// Maximum number of games in an experiment. All results are kept in memory.
 const GAMES_MAX: usize = 4_000_000;
 
 /// The names of a game's teams, the first one first.

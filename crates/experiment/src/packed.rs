@@ -12,7 +12,7 @@ use thiserror::Error;
 /// A sweep or a tournament with all required files; unpacking it reads no other files.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Packed {
-    /// The checked file as JSON.
+    /// The checked sweep or tournament file as JSON.
     pub spec: String,
     /// All required files, in the order in which they are requested: a file precedes those that it
     /// names. In JSON a file is its path with its content as a string, or as bytes in base64.

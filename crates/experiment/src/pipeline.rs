@@ -116,8 +116,8 @@ pub(crate) fn play_in_order<K: Default, R: Send, E>(
     })
 }
 
-/// Runs what is numbered from 0 to `count` - 1 on several threads, and passes each result to `take`
-/// in order.
+/// Calls `run` with each number from 0 to `count` - 1 on several threads, and passes the results to
+/// `take` in order.
 pub fn run_in_order<R: Send>(
     count: usize,
     threads: NonZeroUsize,

@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Minimum time between two moments with futures, s.
 const STEP_S: f64 = 5.0;
-/// Number of moments on each side whose futures are used for a change.
+/// Number of moments on each side of a change whose futures are used to estimate it.
 const WINDOW: usize = 3;
 /// Number of changes that get more futures in each round.
 const REFINED: usize = 6;
@@ -75,9 +75,9 @@ pub struct TurningPoint {
     pub chance: [f64; 2],
     /// The difference of the chances, with its 95 % interval.
     pub change: Estimate,
-    /// The events between these times.
+    /// The events around the change, from the moment before `from_s` to the moment after `to_s`.
     pub events: Vec<EventOutcome>,
-    /// What the boats involved in the events were doing, or else all boats.
+    /// The decisions of the boats involved in the events, or of all boats if there are no events.
     pub decisions: Vec<BoatDecision>,
 }
 
@@ -101,9 +101,9 @@ pub struct Added {
     pub vehicle: String,
     /// Its team.
     pub team: String,
-    /// The team's chance of winning.
+    /// The team's chance of winning minus its chance with the baseline.
     pub chance: Estimate,
-    /// The team's points minus those of the other.
+    /// The team's lead in points minus its lead with the baseline.
     pub margin: Estimate,
 }
 
@@ -122,7 +122,7 @@ struct Course {
 /// played. Returns `None` if `stop` was set.
 ///
 /// # Errors
-/// If the game cannot start, or a mind cannot be copied.
+/// If the recording contains no decision, the game cannot start, or a mind cannot be copied.
 pub fn turning_points(
     past: &Past,
     plan: &Plan,

@@ -26,7 +26,7 @@ pub struct Past {
     pub until: SimTime,
 }
 
-/// The changes to the recorded game after the moment.
+/// The changes to the recorded game after [`Past::until`].
 #[derive(Clone, Debug, Default)]
 pub struct Changes {
     /// Boats that continue with other minds, and the strategies that these follow.
@@ -41,12 +41,12 @@ pub struct Future {
     /// The whole game.
     #[serde(flatten)]
     pub game: Game,
-    /// The score from the moment on, at each change: time, s, and points of both teams.
+    /// The score from [`Past::until`] on, at each change: time, s, and points of both teams.
     pub scores: Vec<(f64, [u32; 2])>,
 }
 
 impl Future {
-    /// The score at a time, or that of the moment before it.
+    /// The score at a time; before [`Past::until`], the first score.
     fn score_at(&self, at_s: f64) -> [u32; 2] {
         let after = self.scores.partition_point(|(since_s, _)| *since_s <= at_s);
         self.scores[after.saturating_sub(1)].1
@@ -233,7 +233,7 @@ pub(crate) fn future_of(
 
 /// The seed of a future.
 pub fn seed_of(past: &Past, future: usize) -> u64 {
-    // Far from the seeds that people use, so that the first future does not equal a different
+    // Far from the seeds that people use, so that the first future is not the same as another
     // recorded game.
     past.scenario.seed.wrapping_add(1_000_003 + future as u64) & (i64::MAX as u64)
 }

@@ -6,8 +6,8 @@ use std::ops::Range;
 /// Maximum length of a mutated input, bytes.
 const LENGTH_MAX: usize = 1 << 20;
 
-/// Edge-case numbers in the notation of TOML, JSON or CSV, words with a meaning to some reader, and
-/// characters that end a string or control a terminal when printed.
+/// Edge-case numbers in the notation of TOML, JSON or CSV, words that mean something to a reader,
+/// and characters that end a string or control a terminal when printed.
 const WORDS: [&str; 28] = [
     "0",
     "-0.0",

@@ -138,7 +138,7 @@ fn child(target: &str, seconds: &str, seed: &str, current: &Path) -> ExitCode {
     }
 }
 
-/// Limits memory to 4 GiB; if it needs more, the process ends.
+/// Limits this process to 4 GiB of memory; it ends if it needs more.
 fn limit_memory() {
     use rustix::process::{Resource, Rlimit, setrlimit};
     let most = Some(4 << 30);

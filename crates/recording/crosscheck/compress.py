@@ -1,4 +1,4 @@
-"""Writes a recording again with the library of MCAP, compressed: python compress.py RECORDING OUT zstd|lz4."""
+"""Rewrites a recording with the MCAP library, compressed: python compress.py RECORDING OUT zstd|lz4."""
 import sys
 
 from mcap.reader import make_reader

@@ -73,7 +73,7 @@ def main(recording, result_path):
         print(f"truncated in the middle, it ends with {type(end).__name__}")
     check(some > counts["frame"] // 4, f"of a file cut in half, only {some} of {counts['frame']} frames are left")
 
-    # As a ROS 2 bag, read without our code or that of MCAP.
+    # Read as a ROS 2 bag, without our code or the MCAP library.
     bag_counts, bag_score = {}, None
     with AnyReader([Path(recording)]) as bag:
         for connection, _, raw in bag.messages():
@@ -91,7 +91,7 @@ def main(recording, result_path):
 
 
 def of_gateway(recording):
-    """The recording of a gateway: the bytes of its link by both packages, and JSON for everything else."""
+    """Checks a gateway's recording: both packages read the bytes of its link, and everything else is JSON."""
     data = open(recording, "rb").read()
     reader = make_reader(io.BytesIO(data), decoder_factories=FACTORIES)
     boat = metadata_of(reader)["gateway"]["vehicle"]

@@ -36,7 +36,7 @@ pub enum RecordingError {
     #[error("not a recording of a game or a gateway: {0}")]
     Foreign(String),
     /// The recording is of a different kind.
-    #[error("not a recording of a {wanted}: it is of a {found}")]
+    #[error("not a recording of a {wanted}: it is a recording of a {found}")]
     Kind {
         /// The expected kind.
         wanted: Kind,

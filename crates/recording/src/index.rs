@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Maximum number of messages in a stretch.
+/// Maximum number of messages in a run of records.
 const MESSAGES_MAX: usize = 256;
 
 /// The position of a message in a file.
@@ -43,7 +43,7 @@ impl IndexEntry {
     }
 }
 
-/// Consecutive messages in a chunk or outside chunks.
+/// A run of records: consecutive messages in one chunk or outside chunks.
 #[derive(Debug)]
 struct Stretch {
     /// The number of messages before it.
@@ -62,7 +62,7 @@ pub(crate) struct Index {
     pub(crate) counts: BTreeMap<u16, usize>,
     /// The first and the last wall-clock time, ns.
     span_utc_ns: Option<(u64, u64)>,
-    /// Start of the chunk of the message added last.
+    /// Start of the chunk that contains the message added last.
     chunk: Option<u64>,
     /// The most recently used run of records, with its messages.
     recent: Mutex<Option<(usize, Arc<[IndexEntry]>)>>,
@@ -124,7 +124,7 @@ impl Index {
     }
 }
 
-/// The messages in a stretch.
+/// The messages in a run of records.
 fn entries_in(source: &Source, place: Range<u64>) -> Vec<IndexEntry> {
     let mut entries = Vec::new();
     let read = records::records_in(source, place, &mut |record, place| {

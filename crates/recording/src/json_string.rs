@@ -42,7 +42,7 @@ mod tests {
         assert_eq!(
             message,
             [0, 1, 0, 0, 3, 0, 0, 0, b'{', b'}', 0],
-            "as CDR lays a string"
+            "as CDR lays out a string"
         );
         assert_eq!(text_of(message.clone()), b"{}");
         for (at, other) in [(0, 1), (1, 0), (4, 2), (7, 9), (10, b' ')] {

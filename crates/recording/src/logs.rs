@@ -101,7 +101,7 @@ impl Logs {
         self.tags.push((at_s, tagged.to_owned(), by.to_owned()));
     }
 
-    /// Adds an interval to all times, s.
+    /// Shifts all times by an interval, s.
     pub fn shift(&mut self, by_s: f64) {
         for (at_s, _) in self
             .values
@@ -154,9 +154,9 @@ impl Logs {
         sources.next().map(|(_, series)| series)
     }
 
-    /// The MCAP file of the game, whose logs must already be sorted. If `is_known`, it is the game
-    /// of this scenario; otherwise the scenario's boats and field are replaced with the logged
-    /// boats and a field around their tracks.
+    /// The game as an MCAP file. Call [`Logs::sort`] first. If `is_known`, it is the game of this
+    /// scenario; otherwise the scenario's boats and field are replaced with the logged boats and a
+    /// field around their tracks.
     ///
     /// # Errors
     /// If the logs do not belong to one game, or a boat is not in it.
@@ -338,7 +338,8 @@ impl Logs {
         }
     }
 
-    /// Reports a boat's changes since the previous frame.
+    /// Reports what changed since the previous frame: whether a boat is tagged, and which flag it
+    /// carries.
     fn tell_changes(
         &self,
         (before, now): (&Frame, &Frame),

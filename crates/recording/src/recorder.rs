@@ -12,7 +12,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Period of flushes to the system. Each flush closes a chunk, whose index entry (about 500 bytes)
-/// stays in memory until the file ends. With four flushes per second, that came to 5 MB an hour.
+/// stays in memory until the file ends. With four flushes per second, that was 5 MB an hour.
 const FLUSH: Duration = Duration::from_secs(1);
 /// Time for which entries accumulate: waking the thread for each one would cost the game more than
 /// the writing itself.
@@ -85,8 +85,8 @@ impl Recorder {
         let theirs = Arc::clone(&shared);
         let size_of = path.clone();
         let thread = std::thread::Builder::new().name("recorder".to_owned());
-        // The recorder runs in the sim's process rather than as an observer on the network, which
-        // the sim would have to wait for or which would miss messages. The game passes copies;
+        // The recorder runs in the sim's process. The sim would have to wait for an observer on the
+        // network, or the observer would miss messages. The game passes copies;
         // `benches/recording.rs` measures the cost.
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
         Ok(Recorder {
@@ -102,8 +102,8 @@ impl Recorder {
     pub fn record(&self, entry: Entry) {
         let size = entry.size();
         let bytes = self.shared.waiting_bytes.fetch_add(size, Ordering::Relaxed) + size;
-        // Entries are dropped and counted if the disk is too slow, so that they never delay a game.
-        // `--check` reports the gaps and does not mistake them for divergence.
+        // A slow disk must never delay a game. `--check` reports the gaps and does not mistake them
+        // for divergence.
         let has_room = bytes <= self.waiting_max;
         let is_taken = has_room && self.jobs.try_send(Job::Write(entry, utc::now_ns())).is_ok();
         if !is_taken {

@@ -73,7 +73,7 @@ test('a page reconnects by itself after a reload or a restart of its server', as
   await sight.until('its helm is received again', () => squall.helm?.report?.collective);
 
   await sim.kill();
-  await sight.until('the game is gone', () => squall.state.phase === 'gone' && /Lost the game/.test(document.getElementById('over').textContent));
+  await sight.until('the game is gone', () => squall.state.phase === 'gone' && /The game has disappeared/.test(document.getElementById('over').textContent));
   assert(await sight.get(() => squall.connected));
   assert.equal(view.code, undefined, 'the server still runs');
   new Program(t, 'sim', file, '--speed', '5x', '--game', name, '--listen', endpoint);
@@ -120,7 +120,7 @@ test('a page without a game says why and what to type, and shows the result of a
     await sight.page.setViewportSize({ width, height });
     const [sheet, over] = await Promise.all(['#sheet', '#over'].map((each) => sight.page.locator(each).boundingBox()));
     assert(over.y >= sheet.y && over.y + over.height <= sheet.y + sheet.height, `the text is cut off at ${width}×${height}`);
-    assert(!(await sight.page.isVisible('text=No boat matches')) && !(await sight.page.isVisible('#pause')), 'controls of no game');
+    assert(!(await sight.page.isVisible('text=No boat matches')) && !(await sight.page.isVisible('#pause')), 'no controls without a game');
   }
   const file = gameFile(t, 'brief', 'pav01_vs_pav01.toml', 'duration_s = 3');
   const record = join(folder(t), 'brief.mcap');

@@ -36,7 +36,7 @@ test('a replay begins to play, and its address carries time and boat', async (t)
   assert.equal(await again.get(() => squall.player.playing), false, 'the linked moment stays');
   for (const [odd, want_s] of [['t=9e99', 600], ['t=whale', null], ['boat=whale&t=5', 5]]) {
     const other = await Sight.open(t, browser, `${url}#${odd}`, SIZE);
-    await other.until(`#${odd} is taken as it can be`, (want_s) => (want_s === null ? squall.player.playing : Math.abs(squall.t_s - want_s) < 0.11), want_s);
+    await other.until(`#${odd} is accepted as far as possible`, (want_s) => (want_s === null ? squall.player.playing : Math.abs(squall.t_s - want_s) < 0.11), want_s);
     await other.close();
   }
 });

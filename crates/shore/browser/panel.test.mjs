@@ -105,7 +105,7 @@ test('a line of the list shows heading, speed with its curve, mode and carried f
     const line = await sight.get(LINE, boat.name);
     const flag = flags.find((each) => each.carrier === boat.name);
     assert.equal(line.flag, flag ? `carries the ${teams[flag.team]} flag` : '', boat.name);
-    // Modes come after the frame, those of the moment before first.
+    // Modes arrive after the frame, and those of the previous moment come first.
     await sight.until(`the line of ${boat.name} shows its state`, ([name, at, isTagged]) => {
       const state = document.querySelector(`[data-vehicle=${name}]`).children[0].lastElementChild.textContent;
       return state === (isTagged ? 'tagged' : squall.modes[at].replaceAll('_', ' ').replaceAll(':', ' › '));

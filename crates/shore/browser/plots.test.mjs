@@ -12,10 +12,10 @@ after(() => browser.close());
 
 const SIZE = { size: { width: 1400, height: 900 } };
 const PAV01 = scenario('games/pav01_vs_pav01.toml');
-/** A long game is thinned, so a sample may be half a second old: the tolerances of speed and range for that case. */
+/** Tolerances of speed and range: the curves of a long game are thinned, so a sample may be half a second old. */
 const OFF_M_S = 1;
 const OFF_M = 3.2;
-/** The duration of a pixel of the timeline, s. */
+/** The time that one pixel of the timeline covers, s. */
 const PIXEL_S = 0.6;
 
 /** Plays and records a game. Returns the address of its replay at its start, and the result. */

@@ -12,7 +12,7 @@ after(() => browser.close());
 
 /** A time after an event, and before the next one, s. */
 const JUST_AFTER_S = 0.3;
-/** Tolerance of a time chosen by a pixel of the timeline, s. */
+/** Tolerance of a time chosen on the timeline, s: the time that one pixel covers. */
 const PIXEL_S = 0.6;
 
 const pav01 = scenario('games/pav01_vs_pav01.toml');

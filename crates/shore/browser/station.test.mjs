@@ -147,14 +147,14 @@ test('a failsafe is seen and heard until it is acknowledged, and no flood keeps 
   await sight.press('#mute');
   await sight.until('the alarm sounds again', (muted) => squall.sounded > muted, muted);
 
-  // What is missing is beside the button, which looks disabled and gives the same reason.
+  // The missing condition is listed beside the button. The button looks disabled, and gives the same reason when pressed.
   await sight.press('#tab-boats');
   await sight.press('[data-vehicle=red_one]');
   await sight.until('the condition is listed', () => /Missing before arming:.*a fresh order/s.test(document.querySelector('.arming').textContent));
   assert.equal(await sight.page.getAttribute('#operate', 'aria-disabled'), 'true');
   // Playwright waits until a button is enabled, unless forced.
   await sight.page.click('#operate', { force: true });
-  assert(!(await sight.page.isVisible('#operate-confirm')), 'no question that leads nowhere');
+  assert(!(await sight.page.isVisible('#operate-confirm')), 'no question about a command that would be refused');
   assert.match(await sight.text('#operated'), /red one cannot be armed yet\. Missing: .*a fresh order/);
   await sight.press('#tab-boats');
 

@@ -33,7 +33,7 @@ function fitted(context, text) {
 const places = new Map();
 const BELOW = 2;
 
-/** Draws a boat's badge where it covers no boat and no other badge, with a line to the boat if that is far. Returns the area taken: left,
+/** Draws a boat's badge where it covers no boat and no other badge, with a line to the boat if it is far away. Returns the area taken: left,
  * top, right, bottom, px; null if there is no space. */
 export function drawBadge(context, view, labels, reading, x, y, room) {
   context.font = FONT;

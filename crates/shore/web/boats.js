@@ -282,7 +282,7 @@ export class Boats {
     return plain ? game.marks[index] & ~(TAGGED | DISABLED) : game.marks[index];
   }
 
-  /** Letters above boats with a fault or penalty. A crowd has no space for those that would cover boats or other letters. */
+  /** Letters above boats with a fault or penalty. In a crowd, those that would cover boats or other letters are omitted. */
   drawMarks(game, view) {
     const { context } = this;
     context.font = '700 11px system-ui, sans-serif';

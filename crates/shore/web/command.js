@@ -23,7 +23,7 @@ async function copy(text) {
 
 /** A command, and a button that copies it; `what` describes its effect. */
 export function commandOf(text, what) {
-  // A browser would break `--seed` after its first dash.
+  // A browser would break the line after the first dash of `--seed`.
   const code = make('code', '', '', ...text.split(/(\s+)/).map((word) => (/^\S{1,30}$/.test(word) ? make('span', '', word) : word)));
   const button = make('button', '', 'Copy');
   button.type = 'button';

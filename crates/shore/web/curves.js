@@ -39,7 +39,7 @@ export class Curves {
     this.next();
   }
 
-  /** The server answers one request at a time and forgets those before the newest. */
+  /** Sends the next request once the previous one has been answered: the server keeps only the newest one. */
   next() {
     const now_ms = performance.now();
     if (this.waiting && now_ms - this.waiting.at_ms < AGAIN_MS) return;

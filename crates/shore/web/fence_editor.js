@@ -6,7 +6,7 @@ import { palette } from './palette.js';
 import { notice } from './status.js';
 import { make, options, show, write } from './words.js';
 
-/** The maximum in a gateway file. */
+/** The maximum that a gateway file allows. */
 const CORNERS_MAX = 100;
 const KEEP_OUTS_MAX = 50;
 const CORNER_PX = 5;

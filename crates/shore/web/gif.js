@@ -111,7 +111,7 @@ export class Gif {
     }
     const bins = [...counts.keys()].filter((bin) => counts[bin] > 0).sort((a, b) => counts[b] - counts[a]).slice(0, SAME);
     this.colours = bins.map((bin) => [0, 1, 2].map((part) => data[first[bin] + part]));
-    /** The nearest colour by bin, plus 1; 0 is not known yet. */
+    /** The nearest colour by bin, plus 1; 0 means not known yet. */
     this.nearest = new Uint16Array(1 << 15);
     const { out } = this;
     out.put(...[...'GIF89a'].map((letter) => letter.charCodeAt(0)));

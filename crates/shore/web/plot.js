@@ -4,7 +4,7 @@ import { Crowd, extentOf } from './crowd.js';
 import { sampleAt } from './diagram.js';
 import { palette, teamColour } from './palette.js';
 import { QUANTITIES, quantityOf, rangeOf, sectionOf } from './quantity.js';
-// Version 1.6.32 as published at npm. It draws thousands of samples within a picture; our own diagrams have no axes, cursor or zoom.
+// Version 1.6.32 as published on npm. It draws thousands of samples within one frame; our own diagrams have no axes, cursor or zoom.
 import uPlot from './vendor/uplot.js';
 import { clock, clockShort, make, options, plain, show, write } from './words.js';
 

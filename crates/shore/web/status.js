@@ -82,7 +82,7 @@ export class Status {
     const waited = [...(state?.gateways ?? []).map((name) => `the gateway of ${plain(name)}`)];
     if (state?.minds && state.phase === 'waiting') waited.unshift(...this.agentWords(state.minds));
     if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to start';
-    if (state?.phase === 'gone') words = 'Lost the game: its server no longer answers. Waiting for another.';
+    if (state?.phase === 'gone') words = 'The game has disappeared: its server no longer answers. Waiting for another.';
     const ended = isAtItsEnd(game);
     if (ended) words = [`${game.scoreWords}. ${resultWords(game)}`, ...endWords(game)].join('\n');
     this.tellMiddle(words);

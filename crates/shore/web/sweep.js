@@ -81,7 +81,7 @@ export class Sweep {
     place.innerHTML = SECTIONS;
   }
 
-  /** The report is complete. */
+  /** Whether more data may come: never, because the report is complete. */
   get goesOn() {
     return false;
   }
@@ -114,7 +114,7 @@ export class Sweep {
     return { name: report.sweep, facts: report.about, chip, remarks: [failures.length > 0 ? `${failures.length} games could not start.` : ''] };
   }
 
-  /** Style sheets have the colours. */
+  /** There is nothing to redraw: the style sheets define the colours. */
   draw() {}
 }
 
@@ -825,7 +825,7 @@ function drawDifferences() {
   toggle.checked = state.onlySure;
   const text = `${metricNow()}: each other entry minus ${report.entries[0]}, on the same seeds. A difference is significant if its 95 % interval does not `
     + 'contain 0; without any true difference, about one in twenty would still be significant.';
-  const choice = make('p', 'on-screen', '', make('label', '', '', toggle, ' only points with a sure difference'));
+  const choice = make('p', 'on-screen', '', make('label', '', '', toggle, ' only points with a significant difference'));
   byId('differences-note').replaceChildren(make('p', 'faint', text), make('ul', '', '', summary), hasIntervals() ? choice : '');
   const rows = report.points.map((point, index) => ({ point, index }))
     .filter(({ point }) => !state.onlySure || others.some((_, k) => sureness(of(point, k)) !== 0));

@@ -40,7 +40,7 @@ export class Tournament {
     place.replaceChildren(this.ratings, this.entry, this.history, this.matrix, this.games);
   }
 
-  /** The report is complete. */
+  /** Whether more data may come: never, because the report is complete. */
   get goesOn() {
     return false;
   }

@@ -150,7 +150,7 @@ export class TrailLayer {
     this.drawn = { look: '', soft: '', at_ms: 0, x: 0, y: 0 };
   }
 
-  /** The canvas is empty and must be redrawn. */
+  /** Marks the canvas as empty, so that it is redrawn. */
   forget() {
     this.drawn.look = '';
   }

@@ -148,7 +148,7 @@ export class WhatIf {
     show(this.table, false);
     show(this.progress, true);
     this.progress.removeAttribute('value');
-    write(this.said, 'Repeating the game up to this moment');
+    write(this.said, 'Replaying the game up to this moment');
     this.send({ do: 'what_if', question: this.question });
     this.tell();
   }
@@ -172,7 +172,7 @@ export class WhatIf {
     if (failed) return this.end(failed);
     this.progress.max = total;
     if (done > 0) this.progress.value = done;
-    if (!result) return write(this.said, done > 0 ? `${done} of ${total} futures` : 'Repeating the game up to this moment');
+    if (!result) return write(this.said, done > 0 ? `${done} of ${total} futures` : 'Replaying the game up to this moment');
     this.result = result;
     this.end(`${total} futures; ± 95 %`);
     this.show(result);

@@ -131,7 +131,7 @@ fn what_is_no_recording_is_refused() {
     assert!(refused(version).contains("recorded by Squall 9.1.0"));
     assert!(
         refused(|opening| opening.kind = Kind::Game)
-            .contains("not a recording of a gateway: it is of a game")
+            .contains("not a recording of a gateway: it is a recording of a game")
     );
     assert!(refused(|opening| opening.facts.clear()).contains("cannot parse its plan"));
     // Headers had no checksum before gateways recorded bags.

@@ -45,7 +45,7 @@ pub(super) struct Game {
 pub(super) struct Games {
     open: Mutex<VecDeque<Open>>,
     folder: TempDir,
-    /// Number of recordings created so far.
+    /// The number of the next recording.
     recordings: AtomicU64,
     /// Plays the games.
     players: ThreadPool,
@@ -56,7 +56,7 @@ pub(super) struct Games {
 struct Open {
     name: String,
     showing: Arc<Showing>,
-    /// The game's recording.
+    /// Where the game is recorded if it is played.
     file: PathBuf,
 }
 

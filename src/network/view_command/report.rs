@@ -160,7 +160,7 @@ struct SweepReport {
     plan: Result<sweep::Plan, String>,
     /// The results from the table next to the report, in game order.
     rows: Result<Vec<sweep::Row>, String>,
-    /// The digests of the worst games in the report, used if there is no table.
+    /// The digests of the worst games in the report, used if the table lacks them.
     digests: BTreeMap<usize, String>,
     games: Games,
 }

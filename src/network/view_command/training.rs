@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// Maximum number of points of a curve; more would not be visible.
 const POINTS_MAX: usize = 1000;
-/// Maximum number of listed episodes, the newest.
+/// Maximum number of listed episodes; only the newest are listed.
 const EPISODES_MAX: usize = 1000;
 /// Columns of an update besides its samples and stage.
 const UPDATES: [&str; 8] = [

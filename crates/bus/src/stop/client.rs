@@ -40,8 +40,7 @@ struct Shared {
 }
 
 impl StopClient {
-    /// A client without paths. It repeats a stop until the boats report it, for up to
-    /// `limit`.
+    /// A client without paths. It repeats a stop until the boats report it, for up to `limit`.
     ///
     /// # Errors
     /// If the system cannot start a thread.
@@ -327,7 +326,7 @@ impl Shared {
             });
             return;
         }
-        // On this path, a fleet-wide stop cannot be sent to individual boats.
+        // On this path, a fleet-wide E-stop cannot be sent to individual boats.
         let boats = saying
             .boats
             .iter()
@@ -450,8 +449,8 @@ fn gateway_said(shared: &Weak<Shared>, unnamed: Option<&str>, news: PathNews) {
 }
 
 impl Saying {
-    /// The command for a gateway. If its boat is unknown: the fleet's E-stop or a stop of one boat,
-    /// but `None` for a fleet-wide disarm.
+    /// The command for the gateway of `vehicle`. If the vehicle is unknown, a stop of one boat is
+    /// sent under that boat's name; a fleet-wide disarm cannot be sent (`None`).
     fn command_to(&self, vehicle: Option<&str>) -> Option<GatewayCommand> {
         if self.is_of_fleet && self.command == StopCommand::EStop {
             return Some(GatewayCommand::Fleet(FleetCommand::EStop));

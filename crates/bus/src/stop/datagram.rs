@@ -53,7 +53,7 @@ impl StopRequest {
     /// Encodes the request as a padded datagram.
     ///
     /// # Panics
-    /// Never: a request is JSON.
+    /// Never: every request can be encoded as JSON.
     pub fn encode(&self) -> Vec<u8> {
         let mut bytes = serde_json::to_vec(self).expect("a request is JSON");
         // The answer may be no longer than the request, but must name all boats. With headers it
@@ -78,7 +78,7 @@ impl StopRequest {
     /// of the request.
     ///
     /// # Panics
-    /// Never: an answer is JSON.
+    /// Never: every answer can be encoded as JSON.
     pub fn answer(&self, room: usize, token: Option<&Token>, boats: &States) -> Option<Vec<u8>> {
         let boats = to_raw_value(boats).expect("states are JSON");
         let mac = token.map(|token| {

@@ -194,7 +194,8 @@ impl GatewayPath {
         })
     }
 
-    /// Tells the threads to end; drop waits for them.
+    /// Tells the datagram thread to end. Drop waits for it, and tells the connection's
+    /// thread to end.
     pub(super) fn close(&self) {
         self.datagrams.close();
     }

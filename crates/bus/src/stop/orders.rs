@@ -350,7 +350,7 @@ impl StopOrders {
             // stop, or a status that is certainly newer.
             let is_sure = source == Source::Answer(stop.number)
                 || relayed.is_some_and(|as_of| as_of > stop.asked);
-            // A lost packet delays statuses for longer than a stop takes.
+            // A lost packet can delay a status by longer than a stop takes.
             if matches!(source, Source::Published(as_of) if as_of < stop.asked)
                 && now < stop.asked + DOUBTED
             {

@@ -170,8 +170,8 @@ impl Axis {
     pub(super) fn telling_values(&self) -> Vec<AxisValue> {
         let mut values = self.levels();
         if self.values.is_empty() {
-            // A key allows an interval, in some cases only the integers in it: the second level
-            // shows whether the steps are integers.
+            // A key allows an interval, or only the integers in it. The second level shows whether
+            // the steps are integers.
             values = vec![self.at(0.0), values.swap_remove(1), self.at(1.0)];
         }
         values

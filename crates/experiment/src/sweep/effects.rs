@@ -25,7 +25,7 @@ pub struct Effect {
     pub axis: String,
     /// The name of the entry.
     pub entry: String,
-    /// From the first level to the last or, in a sampled design, groups of equally many points with
+    /// The levels from first to last; in a sampled design, groups of equally many points with
     /// ascending values.
     pub levels: Vec<Level>,
     /// By metric: the last level minus the first.
@@ -60,7 +60,8 @@ pub struct Interaction {
     /// The effect of the second axis where the first is high, minus its effect where the first is
     /// low.
     pub contrast: Estimate,
-    /// The p-value of the contrast if there is no interaction, uncorrected for multiple tests.
+    /// The p-value of the contrast under the hypothesis of no interaction, uncorrected for multiple
+    /// tests.
     pub p: f64,
     /// Whether it remains significant among all tests (Holm 1979, 5 %).
     pub matters: bool,

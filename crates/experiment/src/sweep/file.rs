@@ -95,7 +95,8 @@ impl ScenarioFile for Sweep {
         let Err(Problems(mut problems)) = checked else {
             return Ok(());
         };
-        // Each value is read as a separate setting, so a problem's source line is not in the file.
+        // Each value is read as a separate setting, so the source line of its problem is not in the
+        // file.
         for problem in problems.iter_mut().filter(|one| one.path == self.path) {
             problem.source.clear();
         }
@@ -122,7 +123,7 @@ impl Sweep {
         for (axis, value) in self.axes.iter().zip(values) {
             if axis.target() != Target::Opponent {
                 let setting = axis.setting(&teams[side], value, &self.path);
-                settings.push(setting.expect("the keys of a checked sweep are keys"));
+                settings.push(setting.expect("a checked sweep has valid keys"));
             } else if let AxisValue::Text(file) = value {
                 opponent = beside(&self.path, file);
             }

@@ -51,7 +51,8 @@ impl Plan {
     pub fn new(sweep: &Sweep) -> Result<Plan, Problems> {
         let plan = Plan::unchecked(sweep, Arc::default())?;
         let mut problems = vec![];
-        // At all other points, entries and sides differ only in strategies.
+        // Check each point with one entry, and each entry at one point. All other games combine the
+        // same points and strategies.
         let of_points = (0..plan.points.len()).map(|point| (point, 0));
         for (point, entry) in of_points.chain((1..sweep.entries.len()).map(|entry| (0, entry))) {
             if let Err(Problems(found)) = plan.scenario(point, entry, 0) {

@@ -82,9 +82,9 @@ pub struct EntryAtPoint {
 /// The difference of each metric between two entries.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// The entry whose metrics are the minuends.
+    /// The entry that is compared.
     pub entry: String,
-    /// The entry whose metrics are subtracted.
+    /// The entry that it is compared with, whose metrics are subtracted.
     pub from: String,
     /// The differences by metric.
     pub metrics: Vec<Option<Estimate>>,

@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn three_wins_of_four_are_the_191_points_of_elos_table() {
-        /// The prior pulls slightly toward the mean.
+        /// The prior pulls slightly towards the mean.
         const PULL: f64 = 1.0;
         let rated = ratings(2, &meetings([0, 1], 750, 1000));
         let ahead = rated[0].elo - rated[1].elo;

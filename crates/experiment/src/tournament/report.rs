@@ -31,7 +31,7 @@ pub struct Report {
     pub sea: Option<String>,
     /// The names of the game's teams.
     pub teams: Vec<String>,
-    /// The entry to whose pairings the tournament was limited.
+    /// If given, the only entry whose pairings were played.
     pub challenger: Option<String>,
     /// The first seed.
     pub seed: u64,
@@ -318,7 +318,7 @@ fn history<'a>(played: impl Iterator<Item = &'a Record>, ranks: &[usize]) -> Vec
     points.map(after).collect()
 }
 
-/// The games of a seed with an entry; both sides of a game against itself.
+/// An entry's games with a seed. A game against itself appears twice, once from each side.
 fn appearances(round: &[Record], entry: usize) -> impl Iterator<Item = Appearance<'_>> {
     round.iter().flat_map(move |record| {
         let sides = (0..2).filter(move |side| record.of.sides[*side] == entry);

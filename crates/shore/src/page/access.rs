@@ -19,7 +19,7 @@ pub(super) struct AccessControl {
 pub(super) struct Tokens {
     /// The token to control the game; `None` permits every page.
     pub(super) control: Option<String>,
-    /// The token to operate real boats. Other users of this machine need it, too.
+    /// The token to operate real boats. Everyone needs it, even other users of this machine.
     pub(super) operate: String,
 }
 

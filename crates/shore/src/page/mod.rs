@@ -45,7 +45,8 @@ use tokio::sync::watch;
 pub struct PageSettings {
     /// The address to listen on; port 0 chooses any free port.
     pub listen: SocketAddr,
-    /// The token that pages need for actions. `None` permits every page.
+    /// The token that pages need for actions. With `None`, every page may act, except that
+    /// operating real boats always needs [`Page::operator_token`].
     pub token: Option<String>,
     /// Additional host names of the server. They require a token, because their users are on other
     /// machines.
@@ -128,7 +129,7 @@ impl Page {
             stop,
             ..
         } = settings;
-        // Use one thread besides the game's: a page must never take a processor from the game.
+        // Use a single thread, to leave the other processors to the game.
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .build()

@@ -28,7 +28,7 @@ use tokio::sync::oneshot;
 use tokio::time::sleep;
 use tokio_io_timeout::TimeoutStream;
 
-/// Maximum number of pages without a token.
+/// Maximum number of pages without the operator's token.
 const PAGES_MAX: usize = 64;
 /// Maximum number of operators' pages; other pages cannot take their slots.
 const OPERATORS_MAX: usize = 8;

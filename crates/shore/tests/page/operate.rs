@@ -20,7 +20,7 @@ const SIMULATED: &str = "blue_two";
 /// The commands that a gateway received.
 type Told = Arc<Watched<Vec<OperatorCommand>>>;
 
-/// A gateway that takes `takes` to arm, rejects a release, and cannot prove that it knows the
+/// A gateway that needs `takes` to arm, rejects a release, and cannot prove that it knows the
 /// token.
 fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
     let told = Told::default();

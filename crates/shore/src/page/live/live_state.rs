@@ -102,7 +102,8 @@ impl LiveGame {
 }
 
 impl LiveState {
-    /// Starts a new game. Clears selections, which belong to the previous one.
+    /// Starts a new game. Discards the state of the previous one, including the selections of
+    /// pages.
     pub(super) fn begin(&mut self, game: Arc<LiveGame>) {
         *self = LiveState {
             game: Some(game),

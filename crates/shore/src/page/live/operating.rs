@@ -1,6 +1,6 @@
 //! Operator commands to the gateways of real boats. Each goes over the game's network in its own
-//! thread. For each boat, one command that needs the token and one that stops it can be in
-//! progress, so that no number of commands can delay a stop.
+//! thread. For each boat, one command that needs the token and one that does not, such as a stop,
+//! can be in progress, so that no number of commands can delay a stop.
 
 use super::SharedState;
 use super::live_state::{LiveGame, LiveState};
@@ -94,7 +94,7 @@ pub(super) fn operate(
         return Err("the game is no longer running".to_owned());
     };
     state.operating.begin(page, vehicle, &command)?;
-    // A stop uses every path, of which this query is one. The latest command counts.
+    // A stop uses every path, including this query. The latest command counts.
     let stop = StopCommand::of(&command);
     match stop {
         Some(stop) => shared.stops.stop(Some(name), stop),

@@ -20,7 +20,7 @@ const ROUND: Duration = Duration::from_millis(50);
 const HELM_ANSWER: Duration = Duration::from_secs(1);
 /// Reciprocal of the maximum share of time that selected helms spend on replies.
 const SHARE: u32 = 5;
-/// Like [`SHARE`], for helms whose mode alone is needed, for the list of all boats.
+/// Like [`SHARE`], for helms in the list of all boats, of which only the mode is needed.
 const LIST_SHARE: u32 = 20;
 /// Interval between queries for a helm's mode.
 const LIST_INTERVAL: Duration = Duration::from_secs(2);
@@ -52,8 +52,8 @@ struct Turn {
 }
 
 impl QuerySchedule {
-    /// The helm to query now, if any: the one that has waited longest. Selected helms precede those
-    /// whose mode alone is needed.
+    /// The helm to query now, if any: the one that has waited longest. Selected helms come before
+    /// those that are only listed.
     fn next(
         &mut self,
         wanted: &BTreeMap<VehicleId, bool>,

@@ -67,7 +67,7 @@ impl FuturesThread {
         FuturesThread(queue)
     }
 
-    /// Stops a viewer's question, if there is one, and queues another.
+    /// Stops a viewer's question, if there is one, and queues the new one, if any.
     pub(super) fn request(&self, viewer: u64, question: Option<Question>) {
         self.0.visit(|queue| {
             queue.remove(viewer);

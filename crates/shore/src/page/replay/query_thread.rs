@@ -13,7 +13,7 @@ use std::ops::Bound;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Recomputes helm reports of a recorded game, which may take a while.
+/// Recomputes helm reports of a recorded game.
 pub trait Helms: Send {
     /// The report of a boat's helm at a decision, with or without utilities.
     fn report(&mut self, vehicle: VehicleId, decision: u64, functions: bool) -> HelmAnswer;
