@@ -93,12 +93,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         ));
     }
     let gap = frames.compare(&sound);
+    let segments = match gap.segments {
+        1 => "1 segment".to_owned(),
+        count => format!("{count} segments"),
+    };
     let title = format!(
-        "{named} among {} runs of {} in {}: {} segments of {} s",
+        "{named} among {} runs of {} in {}: {} of {} s",
         sound.len(),
         boat.name,
         first.sea.name,
-        gap.segments,
+        segments,
         args.segment_s
     );
     screen::print(&table(&title, &gap));

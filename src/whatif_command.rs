@@ -140,9 +140,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// Checks that a recorded game can be continued.
 pub(crate) fn check(recording: &Recording) -> Result<()> {
-    if recording.header().info.pace == recording::logs::PACE {
-        bail!("a recording made from logs does not contain the inputs of a game");
-    }
+    recording_file::check_inputs(recording)?;
     recording.scenario().has_no_real_boats()?;
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Reruns a recorded game from its inputs and compares it with the recording.
 
+use crate::recording_file;
 use anyhow::{Result, bail};
 use messages::Frame;
 use messages::input::Inputs;
@@ -20,9 +21,7 @@ pub(super) struct Verdict {
 
 /// Reruns the game; calls `tell` after every frame.
 pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Verdict> {
-    if recording.header().info.pace == recording::logs::PACE {
-        bail!("a recording made from logs does not contain the inputs of a game");
-    }
+    recording_file::check_inputs(recording)?;
     let scenario = recording.scenario();
     let mut contest = Contest::new(scenario, scenario.seed)?;
     let mut shown = EventCursor::default();

@@ -2,8 +2,8 @@
 
 use crate::scenario_files::existing;
 use crate::terminal;
-use anyhow::{Context, Error, Result, anyhow, bail};
-use recording::{Bag, Recording, RecordingError, alog};
+use anyhow::{Context, Error, Result, anyhow, bail, ensure};
+use recording::{Bag, Recording, RecordingError, alog, logs};
 use std::cmp::Reverse;
 use std::path::{Path, PathBuf};
 
@@ -54,6 +54,15 @@ pub fn named(word: &str) -> Result<PathBuf> {
     found.ok_or_else(|| {
         anyhow!("no recording matches {word:?} in {FOLDER}/; list the recordings with: squall runs")
     })
+}
+
+/// Checks that the recording contains the inputs of its game, so that the game can be rerun.
+pub fn check_inputs(recording: &Recording) -> Result<()> {
+    ensure!(
+        recording.header().info.pace != logs::PACE,
+        "a recording made from logs does not contain the inputs of a game"
+    );
+    Ok(())
 }
 
 /// The given recording, or the newest in `runs`, whose name is then printed.

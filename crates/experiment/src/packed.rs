@@ -52,7 +52,7 @@ impl Packed {
     /// If `spec` cannot be written as JSON because its maps have keys that are not strings.
     pub fn new(spec: &impl Serialize, files: Vec<(PathBuf, Arc<[u8]>)>, digest: String) -> Packed {
         Packed {
-            spec: serde_json::to_string(spec).expect("it has names for keys"),
+            spec: serde_json::to_string(spec).expect("its map keys are strings"),
             files: files
                 .into_iter()
                 .map(|(path, bytes)| (path, bytes.to_vec()))
@@ -154,7 +154,7 @@ mod tests {
             files,
             digest: "d".to_owned(),
         };
-        let json = serde_json::to_string(&packed).expect("it has names for keys");
+        let json = serde_json::to_string(&packed).expect("its map keys are strings");
         assert!(
             json.contains("x = \\\"1\\\"\\n") && json.contains("AP8H"),
             "{json}"

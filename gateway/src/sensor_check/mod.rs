@@ -238,8 +238,9 @@ impl SensorCheck {
                 ""
             };
             let (days, side) = (days.abs(), side(days < 0));
+            let unit = if days == 1 { "day" } else { "days" };
             return Some(format!(
-                "the date is {days} days {side} this host's{rollover}: one of the two is wrong"
+                "the date is {days} {unit} {side} this host's{rollover}: one of the two is wrong"
             ));
         }
         off.map(|behind_s| format!("{}: one of the two is wrong", fixes_in_words(behind_s)))

@@ -164,11 +164,11 @@ fn a_date_that_is_not_the_hosts_is_a_fault_and_midnight_is_none() {
         ),
         (
             "19,11,2026",
-            "the date is 1 days behind this host's: one of the two is wrong",
+            "the date is 1 day behind this host's: one of the two is wrong",
         ),
         (
             "21,11,2026",
-            "the date is 1 days AHEAD of this host's: one of the two is wrong",
+            "the date is 1 day AHEAD of this host's: one of the two is wrong",
         ),
     ] {
         let found = fault(date, host(20)).unwrap_or_default();

@@ -80,7 +80,7 @@ impl TournamentReport {
             .iter()
             .map(|row| (row.game, row.digest.clone()))
             .collect();
-        let mut shown = serde_json::to_value(&report).expect("it has names for keys");
+        let mut shown = serde_json::to_value(&report).expect("its map keys are strings");
         // JavaScript numbers cannot represent every seed.
         let spell = |row: &mut Value| row["seed"] = row["seed"].to_string().into();
         spell(&mut shown);

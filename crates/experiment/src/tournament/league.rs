@@ -109,7 +109,7 @@ impl League {
             seed: record.of.seed,
             outcome,
         };
-        let body = serde_json::to_string(&line).expect("it has names for keys");
+        let body = serde_json::to_string(&line).expect("its map keys are strings");
         let sum = checksum(&body);
         format!("{}{SUM}{sum}\"}}\n", &body[..body.len() - 1])
     }

@@ -13,11 +13,9 @@ use levenberg_marquardt::LeastSquaresProblem;
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use primitives::Ned;
 use primitives::angle::wrap_pi;
-use scenario::sea::{Gusts, Sea, Wind};
+use scenario::sea::{Gusts, PROFILE_EXPONENT, Sea, Wind};
 use std::f64::consts::PI;
 
-/// The usual exponent of the wind's profile over water.
-const PROFILE_EXPONENT: f64 = 0.12;
 /// Step of a parameter's logarithm for finite differences.
 const PARAMETER_STEP: f64 = 1e-4;
 /// Step of a start for finite differences, in standard deviations of its channel.
