@@ -27,7 +27,7 @@ pub(crate) struct Args {
     /// Publishes the whole game for pMarineViewer to the MOOSDB at this address, for example :9000
     #[arg(long, value_name = "ADDRESS")]
     shore: Option<Address>,
-    /// Sends to pShare at this address what the shoreside publishes, for example shore.local:9300;
+    /// Sends what the shoreside publishes to pShare at this address, for example shore.local:9300;
     /// may be repeated
     #[arg(long, value_name = "HOST:PORT", requires = "shore")]
     pshare: Vec<String>,
