@@ -24,8 +24,8 @@ pub(crate) struct GameArgs {
     /// Field to use instead of the game's: a file or a name
     #[arg(long, value_name = "FIELD", value_parser = scenario_files::file_of(Kind::FIELD))]
     field: Option<PathBuf>,
-    /// Strategy for all blue boats, overriding the game's: a file, or a name, which is looked up
-    /// first in the strategies folder next to the game's folder; FILE.onnx plays a trained policy,
+    /// Strategy for all blue boats, overriding the game's: a file or a name. Names are looked up
+    /// first in the strategies folder next to the game's folder. FILE.onnx plays a trained policy,
     /// host:FOLDER a competition entry
     #[arg(long, value_name = "STRATEGY")]
     blue: Option<String>,

@@ -21,22 +21,22 @@ pub(crate) struct Args {
     /// Logs of the real boat, as for `squall identify`
     #[arg(required = true, value_name = "LOG", value_parser = existing)]
     logs: Vec<PathBuf>,
-    /// Boat to compare it with: a file, or the name of a boat in scenarios/boats
+    /// Boat to simulate: a file, or the name of a boat in scenarios/boats
     #[arg(long, value_name = "BOAT")]
     boat: String,
     #[command(flatten)]
     water: WaterArgs,
-    /// Boat in the log, if it contains several
+    /// Boat to read, if the log contains several
     #[arg(long, value_name = "BOAT")]
     vehicle: Option<String>,
-    /// Columns of a CSV table with other names, as for `squall import`
+    /// Column names of a CSV table, as for `squall import`
     #[arg(long, value_name = "MAP")]
     map: Option<Map>,
     /// Number of simulated runs, each with its own waves, gusts, sensor errors and randomised
     /// values
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = whole::<usize>(20, 10_000))]
     runs: usize,
-    /// Length of a segment, s: every run restarts from the log at the beginning of each one
+    /// Length of a segment, s: every run restarts from the log at the beginning of each segment
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(2.0, 3600.0, "s"))]
     segment_s: f64,
     /// Physics tick, s [default: 0.05]

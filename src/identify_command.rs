@@ -22,13 +22,13 @@ pub(crate) struct Args {
     boat: String,
     /// Recorded data: any log that `squall import` reads, or a CSV table with the columns t_s,
     /// commands as for `squall trial --orders`, heading_deg, surge_m_s, yaw_rate_deg_s and, if
-    /// available, sway_m_s, x_m and y_m. Can be repeated
+    /// available, sway_m_s, x_m and y_m. May be repeated
     #[arg(long, required = true, value_name = "FILE", value_parser = existing)]
     log: Vec<PathBuf>,
-    /// Boat in the log, if it contains several
+    /// Boat to read, if the log contains several
     #[arg(long, value_name = "BOAT")]
     vehicle: Option<String>,
-    /// Columns of a CSV table with other names, as for `squall import`
+    /// Column names of a CSV table, as for `squall import`
     #[arg(long, value_name = "MAP")]
     map: Option<Map>,
     /// Parameters to fit, separated by commas [default: surge_linear, surge_quadratic, sway_linear,
@@ -36,7 +36,8 @@ pub(crate) struct Args {
     /// them]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fit: Vec<String>,
-    /// Also fits the mean current; without positions in the log, it is hard to tell from the thrust
+    /// Also fits the mean current, which is hard to distinguish from thrust if the log has no
+    /// positions
     #[arg(long, conflicts_with_all = ["current_m_s", "current_toward_deg"])]
     fit_current: bool,
     /// Also fits the mean wind, if the log determines it: the boat must drive and drift on several
@@ -44,7 +45,7 @@ pub(crate) struct Args {
     #[arg(long)]
     fit_wind: bool,
     /// Length of a segment, s: the simulation restarts from the recorded data at the beginning of
-    /// each one
+    /// each segment
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(1.0, 3600.0, "s"))]
     segment_s: f64,
     /// Writes the fitted boat to this file [default: BOAT_identified.toml in the current folder]

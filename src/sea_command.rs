@@ -26,14 +26,14 @@ pub(crate) struct Args {
     #[arg(value_parser = crate::scenario_files::file_of(scenario::Kind::SEA))]
     sea: Option<PathBuf>,
     /// Estimates the sea from this log of a boat that is adrift, moored or keeping station, writes
-    /// it to a file and describes it. Reads any log that `squall import` reads, if it contains
-    /// heights of a satellite receiver
+    /// it to a file and describes it. Accepts the logs that `squall import` accepts, if they
+    /// contain heights from a satellite receiver
     #[arg(long, value_name = "LOG", value_parser = existing)]
     from: Option<PathBuf>,
-    /// Boat in the log, if it contains several
+    /// Boat to read, if the log contains several
     #[arg(long, value_name = "BOAT", requires = "from")]
     vehicle: Option<String>,
-    /// Columns of a CSV table with other names, as for `squall import`
+    /// Column names of a CSV table, as for `squall import`
     #[arg(long, value_name = "MAP", requires = "from")]
     map: Option<Map>,
     /// Writes the estimated sea to this file [default: LOG_sea.toml in the current folder]

@@ -18,7 +18,7 @@ pub(crate) struct WaterArgs {
     /// Random seed for waves, gusts and the randomised values of boat and sea
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0, u64::MAX))]
     pub(crate) seed: u64,
-    /// Mean current, instead of the sea's own, m/s
+    /// Mean current instead of the sea's, m/s
     #[arg(long, value_name = "M_S", value_parser = speed, default_value_if("current_toward_deg", clap::builder::ArgPredicate::IsPresent, "0"))]
     current_m_s: Option<f64>,
     /// Direction towards which this current flows, compass degrees

@@ -40,7 +40,7 @@ pub(crate) struct Args {
     /// Strategy that one boat continues with; may be repeated
     #[arg(long, value_name = "NAME=STRATEGY", value_parser = boat_and_strategy)]
     vehicle: Vec<(String, String)>,
-    /// Sea from the time --at on: a file or a name, such as gale
+    /// Sea after the time --at: a file or a name, such as gale
     #[arg(long, value_name = "SEA", value_parser = scenario_files::file_of(Kind::SEA))]
     sea: Option<PathBuf>,
     /// Number of futures

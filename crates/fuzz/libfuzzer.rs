@@ -1,4 +1,13 @@
 //! libFuzzer entry point for the target that the environment variable `SQUALL_FUZZ` names.
+//!
+//! Needs a nightly compiler and cargo-fuzz. To fuzz `nmea`, starting from real inputs:
+//!
+//! ```text
+//! cargo run --release --manifest-path crates/fuzz/Cargo.toml --target-dir target -- \
+//!     seeds crates/fuzz/corpus
+//! SQUALL_FUZZ=nmea cargo +nightly fuzz run --fuzz-dir crates/fuzz --features libfuzzer \
+//!     libfuzzer crates/fuzz/corpus/nmea
+//! ```
 
 #![no_main]
 

@@ -22,9 +22,8 @@ pub(crate) struct Args {
     /// Strategy to follow instead of the one in the sim's scenario: a file or a name
     #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
-    /// Python interpreter, and the competition entry that strategies may run with it; the path must
-    /// be exactly as in the strategy; may be repeated. An agent runs no other program that a sim
-    /// names
+    /// Lets strategies run the competition entry PATH, written as in the strategy, with the
+    /// interpreter PYTHON; may be repeated. An agent runs no other programs that a sim names
     #[arg(long, num_args = 2, value_names = ["PYTHON", "PATH"])]
     host: Vec<String>,
     /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at

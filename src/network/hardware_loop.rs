@@ -18,11 +18,11 @@ use std::time::Duration;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
-    /// Replaces real boats with emulated ones, driven by gateways using the protocol that the
+    /// Replaces real boats with emulated boats, driven by gateways over the protocol that the
     /// gateway file specifies; prints the gateways' final status
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
-    /// Gateway file or name for the emulated boats [default: a Surveyor with conservative limits]
+    /// Gateway settings: a file or a name [default: a Surveyor with conservative limits]
     #[arg(long, value_name = "GATEWAY", requires = "emulate", value_parser = scenario_files::file_of(Kind::of::<Gateway>()))]
     gateway: Option<PathBuf>,
     /// Records the link traffic of each gateway to NAME.mcap in this folder

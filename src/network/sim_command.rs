@@ -29,6 +29,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
     /// Simulates only the water and these boats, without a referee, for `squall gateway emulate`
+    /// and `squall gateway sitl`
     #[arg(long, value_name = "NAME", num_args = 1..)]
     afloat: Vec<String>,
     #[command(flatten)]

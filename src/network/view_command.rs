@@ -20,7 +20,7 @@ mod training;
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// What to show: the JSON report of a tournament, the folder of a league, sweep or training, or
-    /// a recording, or part of its name [default: a running game; if there is none, the newest
+    /// a recording or part of its name [default: a running game; if there is none, the newest
     /// recording in runs]
     #[arg(value_name = "REPORT", conflicts_with_all = ["game", "connect"], value_parser = recording_file::named)]
     report: Option<PathBuf>,

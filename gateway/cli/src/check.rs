@@ -43,11 +43,10 @@ pub struct Args {
     /// Runs the pre-flight check for this vehicle on the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
-    /// Gateway file (path or name) that defines how the boat is driven and stopped [default: a
-    /// Surveyor with conservative limits]
+    /// Gateway settings: a file or a name [default: a Surveyor with conservative limits]
     #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
-    /// Guides you through a compass swing and a propeller test, in which you drive the boat by
+    /// Guides you through a compass swing and a propeller test, for which you drive the boat by
     /// remote control; asks before each step
     #[arg(long, requires = "vehicle")]
     guided: bool,

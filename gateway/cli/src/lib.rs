@@ -42,7 +42,7 @@ pub const KINDS: &[Kind] = &[
 pub enum Command {
     /// Connects a real boat to a game, where agents drive it like any other.
     Surveyor(surveyor::Args),
-    /// Checks a boat without sending it anything; with --vehicle, runs the pre-flight check.
+    /// Checks a boat without commanding it; with --vehicle, runs the pre-flight check.
     Check(check::Args),
     /// Stops a boat directly: sends zero thrust and standby over its link.
     Stop(stop_boat::Args),

@@ -36,8 +36,7 @@ pub struct Args {
     /// selects a free port
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
     control_listen: SocketAddr,
-    /// Gateway file (path or name) that defines how the boat is driven and stopped [default: a
-    /// Surveyor with conservative limits]
+    /// Gateway settings: a file or a name [default: a Surveyor with conservative limits]
     #[arg(long, value_name = "GATEWAY", value_parser = command_line::scenario_files::file_of(scenario::Kind::of::<Gateway>()))]
     config: Option<PathBuf>,
     /// Arms once, as soon as the boat is ready; after a failsafe, an operator must arm it

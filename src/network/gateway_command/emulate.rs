@@ -43,8 +43,7 @@ pub(crate) struct Args {
     /// value is unknown
     #[arg(long, value_name = "S", default_value = "none", value_parser = or_none(seconds))]
     watchdog_s: OrNone,
-    /// Ignores a set-point that is not a whole number and keeps the previous one, as one known
-    /// simulator does
+    /// Ignores fractional set-points and keeps the previous one, as one known simulator does
     #[arg(long)]
     integers: bool,
     /// Sentences to send in addition to a Surveyor's; gpsd needs rmc for time, speed and course
