@@ -225,7 +225,7 @@ pub(crate) fn man(args: &ManArgs) -> Result<ExitCode> {
         .filter(|name| command().find_subcommand(name).is_some())
     {
         bail!(UsageError(format!(
-            "{command} is a command, not a folder for man pages, such as man1; for its help, use: squall {command} --help"
+            "expected a folder for the man pages, such as man1, found the command {command}; for its help, run: squall {command} --help"
         )));
     }
     crate::output_file::make_folder(&args.folder)?;

@@ -144,7 +144,7 @@ pub(crate) fn read_log(
             Some(all) => all.append(&log, segment),
         }
     }
-    all.context("there is no log")
+    all.context("no log given")
 }
 
 /// The log as a table: the user's own, or the boat's part of another program's log.

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 
 #[derive(clap::Args)]
 pub(crate) struct JobsArgs {
-    /// Number of worker threads; does not affect results [default: one per core; at most four per
+    /// Number of worker threads, at most four per core; does not affect results [default: one per
     /// core]
     #[arg(long, value_name = "N", value_parser = whole::<NonZeroUsize>(1, u64::MAX))]
     jobs: Option<NonZeroUsize>,

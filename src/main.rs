@@ -93,7 +93,7 @@ enum Command {
         after_help = "Examples:\n  squall log\n  squall log strategy_4_vs_3 --csv events\n  squall log --compare strategy_4_vs_3 surveyor_2v2\n  squall log --turning-points --futures 50"
     )]
     Log(log_command::Args),
-    /// Turns logs of other programs into a recording: MOOS, ArduPilot, ROS, NMEA 0183, CSV.
+    /// Imports logs of other programs: MOOS, ArduPilot, ROS, NMEA 0183, CSV.
     #[command(
         after_help = "Examples:\n  squall import alpha.alog bravo.alog --out game.mcap\n  squall import blue_one=00000042.BIN red_one=flight.tlog\n  squall import track.csv --map t=epoch_ms,speed=SOG:kn,heading=HDT:deg"
     )]

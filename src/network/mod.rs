@@ -65,7 +65,7 @@ pub(crate) enum Command {
     /// Replays a recorded game, or verifies that a rerun reproduces it.
     #[command(after_help = "Examples:\n  squall replay\n  squall replay strategy_4_vs_3 --check")]
     Replay(replay_command::Args),
-    /// Prints one decision of a boat's helm as a table or as CSV.
+    /// Prints one decision of a boat's helm as a table; with --csv, also writes it to a file.
     #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --csv helm.csv")]
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated boats.

@@ -41,8 +41,8 @@ pub(crate) struct Args {
     /// Number of boats per agent process
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u16>(1, u64::from(u16::MAX)))]
     agents_per_process: u16,
-    /// Folder with keys from `squall keys new`: encrypts all links, and authenticates every node by
-    /// certificate
+    /// Encrypts all links and authenticates every node by certificate, with the keys in this folder
+    /// (see `squall keys new`)
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
     #[command(flatten)]

@@ -19,7 +19,8 @@ impl Declaration {
 pub type OnBytes = Box<dyn Fn(&[u8]) + Send + Sync>;
 /// Receives a query and a handle to answer it.
 pub type OnQuery = Box<dyn Fn(Parcel, Box<dyn PendingQuery>) + Send + Sync>;
-/// Receives the key of a node, and whether it has appeared (`true`) or left.
+/// Receives the key of a liveliness token, and whether the token has appeared (`true`) or
+/// disappeared.
 pub type OnToken = Box<dyn Fn(&str, bool) + Send + Sync>;
 /// Receives the identifier of a node that has lost its link.
 pub type OnLinkLost = Box<dyn Fn(String) + Send + Sync>;

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 pub struct Patience {
     /// Limit in every case.
     pub silence: Duration,
-    /// Limit if the sim was heard until its token disappeared: the link may only have been
+    /// Limit if the sim was heard until its token disappeared: perhaps the link was merely
     /// reopened.
     pub missing: Duration,
     /// Limit if the sim was never heard and its token disappeared: it has died, or the link has
@@ -51,12 +51,12 @@ pub enum SimState {
 struct SimLiveness {
     patience: Patience,
     heard_at: Instant,
-    /// Whether it was ever heard. Before its game begins it may be silent for any time; then its
-    /// token counts instead.
+    /// Whether it was ever heard. Before its game begins, it may be silent for any length of time;
+    /// until then, its token counts instead.
     is_heard: bool,
     /// When its token was first found missing.
     missed_at: Option<Instant>,
-    /// The sim in use: the first one seen, by the key of its token.
+    /// The sim in use, by the key of its token.
     ours: Option<String>,
     /// The tokens present.
     tokens: BTreeSet<String>,
@@ -100,7 +100,7 @@ impl SimLiveness {
         self.ours.is_some()
     }
 
-    /// Whether the token of our sim is present; `None` if no sim was ever seen.
+    /// Whether the token of our sim is present; `None` without a sim in use.
     fn is_there(&self) -> Option<bool> {
         self.ours.as_ref().map(|ours| self.tokens.contains(ours))
     }
@@ -197,8 +197,8 @@ mod tests {
 
     const SILENCE: u64 = 60;
 
-    /// Simulates seconds from the start: whether the sim is heard, and whether its token is
-    /// present. Returns the second at which it is treated as lost.
+    /// Returns the second at which a sim is treated as lost. The functions state in which seconds
+    /// the sim is heard and its token is present.
     fn died(
         silence_s: u64,
         is_heard: impl Fn(u64) -> bool,

@@ -157,7 +157,9 @@ impl Moment {
 /// A copy of all minds.
 fn fork(runner: &MindRunner) -> Result<MindRunner, String> {
     let copy = runner.fork();
-    copy.ok_or_else(|| "a mind of this game cannot be copied".to_owned())
+    copy.ok_or_else(|| {
+        "a boat of this game is controlled by a program whose state cannot be copied".to_owned()
+    })
 }
 
 /// Plays the past and one of its futures, with random numbers drawn with `seed`. Stops when

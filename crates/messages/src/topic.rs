@@ -34,7 +34,8 @@ impl GameName {
     }
 }
 
-/// All topics of a game that match `pattern`: `*` matches one word, `**` any number of words.
+/// All topics of a game that match `pattern`: `*` matches one segment of the key, `**` any
+/// number of segments.
 pub fn matching(game: &GameName, pattern: &str) -> String {
     format!("squall/{}/{pattern}", game.0)
 }
@@ -120,7 +121,8 @@ pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) 
     )
 }
 
-/// Gateway reports for other nodes, sent to the sim only (publish): see [`Reported`].
+/// Gateway reports for other nodes (publish). Only the sim receives them; it checks and forwards
+/// them: see [`Reported`].
 pub fn report(game: &GameName, what: Reported, vehicle: &str) -> String {
     format!("squall/{}/report/{what}/{vehicle}", game.0)
 }
@@ -140,7 +142,7 @@ pub fn operate(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/operate/{vehicle}", game.0)
 }
 
-/// Stops of a real boat, which need no token (publish).
+/// Stop commands for a real boat, which need no token (publish).
 pub fn stop(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/stop/{vehicle}", game.0)
 }
@@ -161,7 +163,8 @@ pub fn water(game: &GameName) -> String {
 }
 
 /// Join requests for this role and these vehicles (query): agents use their team's key, gateways
-/// their boat's. Requests for several teams, several boats or unknown vehicles use a common key.
+/// their boat's. Agents of several teams, gateways of several boats, and requests with unknown or
+/// no vehicles use one key per role.
 pub fn join(game: &GameName, scenario: &Scenario, role: Role, vehicles: &[String]) -> String {
     let known = vehicles.iter().map(|name| scenario.vehicle_by_name(name));
     let place = match (role, known.collect::<Option<Vec<VehicleId>>>().as_deref()) {

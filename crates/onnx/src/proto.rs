@@ -1,7 +1,7 @@
 //! The messages of an ONNX file that a network needs.
 //!
 //! Names and numbers of fields are from `onnx.proto` (ONNX 1.16) and never change. Readers skip
-//! undeclared fields. `limit.rs` has the same tree.
+//! undeclared fields. Keep `limit::content` consistent with these messages.
 
 use prost::Message;
 
@@ -47,7 +47,7 @@ const DATA_TYPES: [&str; 17] = [
     "BFLOAT16",
 ];
 
-/// The name of an element type or, for unknown types, its number.
+/// An element type in words: "FLOAT numbers" or, for unknown types, "element type 99".
 pub(super) fn data_type_name(data_type: i64) -> String {
     let known = usize::try_from(data_type)
         .ok()
@@ -140,7 +140,7 @@ pub(super) struct AttributeProto {
 
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct TensorProto {
-    // The specification does not allow packing for this field.
+    // `onnx.proto` does not declare this field as packed.
     #[prost(int64, repeated, packed = "false", tag = "1")]
     pub(super) dims: Vec<i64>,
     #[prost(int32, tag = "2")]

@@ -96,7 +96,7 @@ pub fn decode<M: Message + DeserializeOwned>(bytes: &[u8]) -> Result<M, DecodeEr
         cdr_encoding::from_bytes::<M, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
     if used != body.len() {
         return Err(layout(format!(
-            "{} bytes follow its end",
+            "{} extra bytes at the end",
             body.len() - used
         )));
     }

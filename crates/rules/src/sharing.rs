@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A team's information about other boats.
+/// Limits on a team's information about other boats.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sharing {
-    /// Range at which a boat is seen, m. Default: unlimited.
+    /// Maximum range at which a boat is seen, m. Default: unlimited.
     #[schemars(range(min = 1, max = 1000000))]
     pub range_m: Option<f64>,
     /// Full angle of view about the bow, rad.

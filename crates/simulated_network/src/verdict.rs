@@ -1,4 +1,4 @@
-//! The result of a simulation: its published messages, how it ended, and its nodes.
+//! The result of a simulation: its published messages, and how it and its nodes ended.
 
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ pub struct NodeEnd {
     pub was_killed: bool,
 }
 
-/// A published message at the hub: sent by it, or received.
+/// A published message, when the hub sends or receives it, or when a leaf receives it.
 #[derive(Clone, Copy, Debug)]
 pub struct Published<'a> {
     /// Virtual time since the start.

@@ -40,7 +40,7 @@ pub struct Args {
     /// How long to listen, s [default: 10, or 30 with --vehicle]
     #[arg(long, value_name = "S", value_parser = seconds)]
     for_s: Option<f64>,
-    /// Runs the pre-flight check for this vehicle on the field of its game
+    /// Runs the pre-flight check for this vehicle, with the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
     /// Gateway settings: a file or a name [default: a Surveyor with conservative limits]

@@ -27,7 +27,7 @@ type Parts = (
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum RestoreError {
     /// Not a snapshot, or one with a different layout.
-    #[error("not a snapshot of this version of Squall")]
+    #[error("not a snapshot made by this version of Squall")]
     NotASnapshot,
     /// A snapshot of a different scenario or seed.
     #[error("a snapshot of another scenario or seed, or of other versions of its files")]

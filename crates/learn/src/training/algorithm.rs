@@ -69,7 +69,7 @@ pub struct Ppo {
     /// Initial step size of the optimiser.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.0003))]
     pub learning_rate: f32,
-    /// Final fraction of the step size; it falls linearly.
+    /// Final step size as a fraction of the initial one; it falls linearly.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.1))]
     pub learning_rate_end: f32,
     /// Limit of the relative change of an action's probability.
@@ -108,8 +108,8 @@ pub struct Td3 {
     /// Transitions per optimiser step, drawn from the replay buffer.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 512))]
     pub minibatch: usize,
-    /// Newest transitions in the replay buffer. Each takes 8 bytes per value of the observation
-    /// plus about 20, in memory and in `state.bin`.
+    /// Size of the replay buffer, in transitions; the newest are kept. Each takes 8 bytes per value
+    /// of the observation plus about 20, in memory and in `state.bin`.
     #[schemars(range(min = 1000, max = 10_000_000), extend("default" = 250_000))]
     pub buffer: usize,
     /// Transitions in the replay buffer before learning starts; until then, actions in the first
@@ -122,7 +122,7 @@ pub struct Td3 {
     /// Discount factor per step.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
     pub discount: f32,
-    /// Factor on rewards; values should be about 1 to 10.
+    /// Factor on rewards; choose it so that the values that critics learn are about 1 to 10.
     #[schemars(range(min = 0.000_001, max = 1_000_000), extend("default" = 1))]
     pub reward_scale: f32,
     /// Fraction of the learned weights that target networks adopt per step of the policy's
@@ -155,8 +155,8 @@ pub struct Dqn {
     /// Transitions per optimiser step, drawn from the replay buffer.
     #[schemars(range(min = 1, max = 1_000_000), extend("default" = 512))]
     pub minibatch: usize,
-    /// Newest transitions in the replay buffer. Each takes 8 bytes per value of the observation
-    /// plus about 10, in memory and in `state.bin`.
+    /// Size of the replay buffer, in transitions; the newest are kept. Each takes 8 bytes per value
+    /// of the observation plus about 10, in memory and in `state.bin`.
     #[schemars(range(min = 1000, max = 10_000_000), extend("default" = 250_000))]
     pub buffer: usize,
     /// Transitions in the replay buffer before learning starts.
@@ -168,7 +168,7 @@ pub struct Dqn {
     /// Discount factor per step.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.995))]
     pub discount: f32,
-    /// Factor on rewards; values should be about 1 to 10.
+    /// Factor on rewards; choose it so that the values that critics learn are about 1 to 10.
     #[schemars(range(min = 0.000_001, max = 1_000_000), extend("default" = 1))]
     pub reward_scale: f32,
     /// Optimiser steps between updates of the target network.

@@ -130,8 +130,8 @@ pub struct Stage {
     /// Game file with two teams of equal size; its strategies are ignored.
     #[schemars(with = "FilePath")]
     pub game: PathBuf,
-    /// Minimum and maximum team size, drawn for each team and game; for observation "squall".
-    /// Default: all boats.
+    /// Minimum and maximum team size; a size is drawn for each team and game. Only with observation
+    /// "squall". Default: all boats.
     #[schemars(inner(range(min = 1, max = 10000)))]
     pub team_sizes: Option<[u32; 2]>,
     /// Sea file. Default: the game's.
@@ -147,11 +147,11 @@ pub struct Stage {
     /// Strategy that the policy imitates (behaviour cloning) and whose returns the critic learns.
     /// Default: none.
     pub teacher: Option<Teacher>,
-    /// Strategy file of teammates: the policy drives one boat at a time, in turn. Default: none,
-    /// the policy drives all.
+    /// Strategy file of teammates: the policy drives one boat per game, a different one each time.
+    /// Default: none, the policy drives all.
     #[schemars(with = "Option<FilePath>")]
     pub mates: Option<PathBuf>,
-    /// Weight of the policy itself as opponent.
+    /// Weight of the policy itself as an opponent.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub self_play: f64,
     /// Total weight of past policies as opponents.
@@ -163,8 +163,8 @@ pub struct Stage {
     /// Strategies as opponents.
     #[schemars(length(max = 100))]
     pub opponent: Vec<Opponent>,
-    /// Number of different starts, used in rotation: seas and boats are created once. Default: a
-    /// new start every game.
+    /// Number of different starts, used in rotation, so that seas and boats are created only once
+    /// per start. Default: a new start every game.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub starts: Option<u32>,
     /// Maximum duration of an episode, s. Default: whole games.
@@ -186,7 +186,7 @@ pub struct Teacher {
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
     /// With `action = "options"`: the option for each mode. An omitted mode uses the option with
-    /// the same name, or is not learned from.
+    /// the same name; if there is none, the policy does not learn from that mode.
     #[schemars(extend("default" = {}))]
     pub options: BTreeMap<String, String>,
 }

@@ -141,7 +141,7 @@ impl Client {
         std::iter::from_fn(|| self.next_within(QUIET).ok().flatten()).collect()
     }
 
-    /// The close code, if the server closes in time with one.
+    /// The close code, if the server closes in time and sends one.
     pub(crate) fn close_code(&mut self) -> Option<u16> {
         loop {
             match self.next_within(LIMIT) {
@@ -164,7 +164,7 @@ impl Client {
     }
 }
 
-/// Requests a file as a browser does. Returns the status and body of the response.
+/// Requests a file as a browser does. Returns the status and the whole response.
 pub(crate) fn get(address: SocketAddr, path: &str, host: &str) -> (u16, String) {
     let mut stream = TcpStream::connect(address).expect("the server listens");
     stream

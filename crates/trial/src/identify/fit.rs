@@ -129,7 +129,7 @@ pub enum NoFit {
     Search(String),
     /// Several winds explain the log.
     #[error(
-        "the log does not determine the wind: {0} explain it equally well; specify it in --sea"
+        "the log does not determine the wind: {0} explain it equally well; give the wind to --sea"
     )]
     Ambiguous(String),
     /// The log does not determine some parameters.

@@ -4,6 +4,9 @@
 //! [GAME.toml ...]`. The default is the shipped games that need no person and no real boat, with
 //! seed 1. A pure optimisation leaves every digest unchanged.
 
+mod core_time;
+
+use core_time::core_time_s;
 use primitives::SimTime;
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
@@ -72,16 +75,4 @@ fn print_game(path: &Path, scenario: &Scenario, seed: u64, until: SimTime) {
         outcome.duration_s / taken_s,
         outcome.digest
     );
-}
-
-/// CPU time of this thread, s: other load on the machine is not counted.
-fn core_time_s() -> f64 {
-    let path = "/proc/thread-self/schedstat";
-    let text = std::fs::read_to_string(path)
-        .unwrap_or_else(|e| panic!("{path}: {e} (this program needs Linux)"));
-    let first = text
-        .split_whitespace()
-        .next()
-        .and_then(|time_ns| time_ns.parse::<f64>().ok());
-    first.unwrap_or_else(|| panic!("{path} is {text:?}, expected three numbers")) * 1e-9
 }
