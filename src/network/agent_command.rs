@@ -39,7 +39,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     stop::exit_when_late(&stop);
-    let names = args.vehicle.join(", ");
+    let names = boats_in_words(&args.vehicle);
     let load = |path: &PathBuf| {
         scenario::load_file::<Strategy>(path)
             .with_context(|| format!("cannot use the strategy {}", path.display()))
@@ -96,4 +96,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     } else {
         ExitCode::SUCCESS
     })
+}
+
+/// The boats' names for messages; of many boats, only the first and the last.
+pub(super) fn boats_in_words(names: &[impl AsRef<str>]) -> String {
+    const LISTED: usize = 8;
+    match names {
+        [first, .., last] if names.len() > LISTED => {
+            let (first, last) = (first.as_ref(), last.as_ref());
+            format!("{first} to {last} ({} boats)", names.len())
+        }
+        _ => {
+            let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+            names.join(", ")
+        }
+    }
 }

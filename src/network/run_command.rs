@@ -1,5 +1,6 @@
 //! `squall run` across processes: a sim, agents, the page, and gateways for emulated boats.
 
+use super::agent_command::boats_in_words;
 use super::child_process::{self, ChildProcess, option};
 use super::hardware_loop::{HardwareLoop, LoopArgs};
 use super::hub_args::{free_port, token_text, unique_game_name};
@@ -278,7 +279,7 @@ fn start_agents(
             command.args(["--host", &host.python, &host.path]);
         }
         ChildProcess::start(
-            &format!("the agent of {}", names.join(", ")),
+            &format!("the agent of {}", boats_in_words(&names)),
             command,
             Stdio::piped(),
         )

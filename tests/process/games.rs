@@ -39,6 +39,23 @@ fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
 }
 
 #[test]
+fn pictures_of_a_thousand_boats_reach_the_agents() {
+    let game = own("six_hundred_a_side");
+    let here = game_itself(result_of(&[&game, "--in-process"]));
+    let output = all_output(squall(&[
+        "run",
+        &game,
+        "--no-record",
+        "--agents-per-process",
+        "300",
+    ]));
+    let digest = here["digest"].as_str().expect("a digest");
+    assert!(output.contains(digest), "{digest}, but {output}");
+    // Agents that miss the end of the game are killed.
+    assert!(!output.contains("killed"), "{output}");
+}
+
+#[test]
 fn a_game_that_was_reset_is_the_game_of_that_seed() {
     // Its boats and sea are drawn with the seed, too.
     let game = own("rough");

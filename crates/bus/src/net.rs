@@ -36,6 +36,23 @@ const LINKS: [(&str, &str); 5] = [
     ("transport/link/rx/max_message_size", "16777216"),
 ];
 
+/// Maximum length of a picture or frame, bytes per boat of the game; a test encodes them.
+const BOAT_BYTES: usize = 128;
+/// Space for data in a batch of zenoh's, bytes.
+const BATCH_BYTES: usize = 65_000;
+/// The smallest and the largest queue of zenoh's, in batches. A longer one would delay boats on
+/// slow links, which would receive old pictures first.
+const QUEUE: (usize, usize) = (2, 16);
+/// The most boats whose pictures fit into the largest queue.
+pub const BOATS_MAX: usize = (QUEUE.1 - 1) * BATCH_BYTES / BOAT_BYTES;
+
+/// The length, in batches, of a queue for the pictures of a game with this many boats. A queue
+/// drops a message that needs more batches than it has: with zenoh's two, no agent of a game with
+/// 1,100 boats ever received a picture.
+fn queue_for(boats: usize) -> usize {
+    ((boats * BOAT_BYTES).div_ceil(BATCH_BYTES) + 1).clamp(QUEUE.0, QUEUE.1)
+}
+
 /// How a hub treats messages from other nodes. All are dropped if they would have to wait for their
 /// outgoing link. An answer inherits the settings of its query. The longest answers need the
 /// priority `data_low`, because only its queue has space for them: a scenario with a network has
@@ -120,7 +137,21 @@ impl Net {
                 keys.folder.display()
             )));
         }
+        let boats = scenario.vehicles.len();
+        if boats > BOATS_MAX {
+            return Err(BusError::Open {
+                what: "serve the game".to_owned(),
+                reason: format!(
+                    "it has {boats} boats, expected at most {BOATS_MAX} over a network; play it with --in-process"
+                ),
+            });
+        }
         let mut config = self.base()?;
+        set(
+            &mut config,
+            "transport/link/tx/queue/size/data",
+            &queue_for(boats).to_string(),
+        )?;
         // A file with its own rules takes precedence.
         if config.get_json("access_control/enabled").ok().as_deref() != Some("true") {
             set(
@@ -358,6 +389,31 @@ pub fn free_port(prefer_default: bool) -> std::io::Result<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use messages::picture::OwnBoat;
+    use messages::{Frame, Picture, VehicleTruth};
+    use primitives::{VehicleId, codec};
+
+    #[test]
+    fn the_longest_pictures_and_frames_fit_into_the_queue() {
+        for boats in [4, 500, 1_100, BOATS_MAX] {
+            let frame = Frame {
+                vehicles: vec![VehicleTruth::default(); boats],
+                ..Frame::default()
+            };
+            let own = OwnBoat::new(VehicleId(0), Default::default());
+            let picture = Picture {
+                own: vec![own; boats],
+                ..Picture::default()
+            };
+            for bytes in [codec::encode(&frame).len(), codec::encode(&picture).len()] {
+                let batches = bytes.div_ceil(BATCH_BYTES);
+                assert!(
+                    batches < queue_for(boats).max(2),
+                    "{boats} boats: {bytes} bytes"
+                );
+            }
+        }
+    }
 
     #[test]
     fn only_loopback_is_limited_to_this_machine() {
