@@ -13,7 +13,7 @@ const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 const MESSAGE: u8 = 2;
 const CHUNK: u8 = 5;
 const CONNECTION: u8 = 7;
-/// Maximum size of a decompressed chunk, bytes; `rosbag record` writes 768 kB.
+/// Maximum number of bytes decompressed from a chunk; `rosbag record` writes chunks of 768 kB.
 const CHUNK_MAX: u64 = 256 << 20;
 
 /// A record: the fields of its header, and its data.
