@@ -1,4 +1,5 @@
-//! The database: registration, types, clients that leave, and what each client receives.
+//! Tests of the database: registration, types, clients that leave, and the messages that each
+//! client receives.
 
 use super::*;
 use crate::mail::MAIL_MAX;
