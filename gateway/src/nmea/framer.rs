@@ -6,7 +6,7 @@
 use super::checksum;
 use serde::{Deserialize, Serialize};
 
-/// Maximum bytes of a sentence that is accepted, including `$` and CR LF. The standard says 82, but
+/// Maximum bytes of an accepted sentence, including `$` and CR LF. The standard says 82, but
 /// receivers that send minutes with seven decimal places send GGA sentences of 88.
 pub const ACCEPTED_MAX: usize = 256;
 
@@ -15,8 +15,8 @@ const CONTENT_MAX: usize = ACCEPTED_MAX - 3;
 
 /// Counts of the input of a [`Framer`].
 ///
-/// Every `$` ever pushed is in exactly one of `sentences`, `bad_checksum`, `overlong` and `broken`,
-/// except for one in a sentence that may still be incomplete.
+/// Every `$` is counted in exactly one of `sentences`, `bad_checksum`, `overlong` and `broken`,
+/// except that of a sentence that is still incomplete.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Sentences with a valid checksum.

@@ -71,7 +71,8 @@ pub struct Rmc {
 }
 
 impl Rmc {
-    /// 12 fields: without magnetic variation, and with a mode of autonomous or not valid.
+    /// 12 fields: without magnetic variation, and with the mode indicator "autonomous" or "not
+    /// valid".
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let mode = fix_mode(self.valid);
         let fields = vec![

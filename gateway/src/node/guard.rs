@@ -37,7 +37,7 @@ const LAST_WORDS: usize = 4;
 /// Maximum time to write one sentence.
 const WRITE_MAX: Duration = Duration::from_millis(50);
 
-/// Messages to the guard: one byte each. The stop message follows its byte.
+/// Messages to the guard: one byte each. The stop message follows the byte `STOP`.
 const ALIVE: u8 = b'.';
 const LINK: u8 = b'+';
 const NO_LINK: u8 = b'-';
@@ -87,7 +87,8 @@ impl Guarded {
         Ok(guarded)
     }
 
-    /// Reports that the loop is running; returns the guard's failure the first time it is noticed.
+    /// Reports that the loop is running. Returns `false` the first time that the guard is found to
+    /// be dead.
     pub(super) fn beat(&self) -> bool {
         self.send(&[ALIVE], None) || self.0.is_gone.swap(true, Ordering::Relaxed)
     }
@@ -113,8 +114,8 @@ impl Guarded {
         self.send(&[ENDS], None);
     }
 
-    /// Returns whether the guard still exists. A message to a suspended guard may be lost, once its
-    /// queue is full.
+    /// Sends a message. Returns whether the guard still exists. A message to a suspended guard is
+    /// lost once its queue is full.
     fn send(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];

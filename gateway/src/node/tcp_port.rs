@@ -30,7 +30,8 @@ struct Server {
 }
 
 impl TcpPort {
-    /// Opens a port for this many connections; a new connection displaces the one idle for longest.
+    /// Opens a port for this many connections. If all are in use, a new connection displaces the
+    /// one that has been idle for longest.
     pub(super) fn open(
         listen: SocketAddr,
         name: &str,

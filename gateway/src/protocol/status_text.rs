@@ -62,7 +62,7 @@ impl StatusTexts {
         }
         text.text.extend(&letters);
         (text.at, text.next_chunk) = (now, status.chunk_seq.saturating_add(1));
-        // The last chunk is the one that is not full.
+        // A chunk that is not full is the last one.
         if letters.len() < capacity {
             return say(in_words(&text.text));
         }
