@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 /// Number and duration (s) of the pieces of a straight run; the boat settles during the first.
 const PIECES: usize = 4;
 const PIECE_S: f64 = 1.5;
-/// Maximum spread of the headings of its pieces, rad.
+/// Maximum spread of the headings of a run's pieces, rad.
 const STRAIGHT_RAD: f64 = 0.3;
 /// Minimum ordered speed of a run, m/s.
 const SPEED_FROM_M_S: f64 = 0.7;
@@ -86,8 +86,8 @@ impl CompassCheck {
             self.interrupt();
             self.speed_m_s = ordered_m_s;
         } else {
-            // A Surveyor takes its log speed from GPS, so its speed through the water is unknown.
-            // The delayed order replaces it; only its direction matters, not its scale.
+            // A Surveyor takes its reported speed from GPS, so its speed through the water is
+            // unknown. The delayed order replaces it; only its direction matters, not its scale.
             self.speed_m_s += (ordered_m_s - self.speed_m_s) * (gap_s / SPEED_LAG_S).min(1.0);
         }
         let (began, _) = self.began.unwrap_or((now, now));

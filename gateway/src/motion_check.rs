@@ -11,7 +11,7 @@ use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::collections::VecDeque;
 
-/// Minimum time (s) over which positions yield a speed.
+/// Maximum and minimum time (s) over which positions yield a speed.
 const WINDOW_S: f64 = 4.0;
 const WINDOW_MIN_S: f64 = 2.0;
 /// Maximum number of positions stored: 20 a second.
@@ -129,7 +129,7 @@ impl MotionCheck {
         Some((newer - older).scaled(1.0 / (newer_s - older_s)))
     }
 
-    /// The current fault.
+    /// The current fault, if any.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
         let turned = self
             .shown

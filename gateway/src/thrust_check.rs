@@ -280,7 +280,7 @@ impl ThrustCheck {
         }
     }
 
-    /// The order that the boat fails to follow while driven.
+    /// The fault of a boat that is driven and fails to follow its orders, if any.
     pub(crate) fn fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.fault.filter(|_| {
             self.last

@@ -59,7 +59,7 @@ impl Alarm {
     }
 }
 
-/// A fault of a thruster current.
+/// A fault that an electrical current shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wrong {
     Bilge,
@@ -90,7 +90,7 @@ pub(super) struct Alarms {
     notice: Option<String>,
     /// The current tilt, degrees.
     tilt: Alarm,
-    /// Abnormal thruster currents, A, by fault (order of `WRONGS`), then side (port first).
+    /// Abnormal currents, A, by fault (order of `WRONGS`), then side (port first).
     currents: [[Alarm; 2]; 3],
 }
 

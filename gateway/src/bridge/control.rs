@@ -84,7 +84,7 @@ impl ControlLog {
     /// Why we do not command the boat now, according to its reports.
     pub(super) fn fault(&self, now: SimTime) -> Option<ControlFault> {
         // Some boats report no operator. For these, the owner can declare in the file that the
-        // gateway commands them; otherwise silence means that someone else may command it.
+        // gateway commands them; otherwise, silence means that someone else may command the boat.
         let silent = (!self.watch.assumed).then_some(ControlFault::Unknown);
         let Some((at, report)) = self.reported else {
             return silent;

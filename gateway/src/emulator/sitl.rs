@@ -1,5 +1,5 @@
-//! ArduPilot's own firmware as the front seat of a simulated boat: Squall is the physics of its
-//! *software in the loop* (SITL), through SITL's JSON back end.
+//! ArduPilot's own firmware as the front seat of a simulated boat: Squall provides the physics for
+//! its *software in the loop* (SITL), through SITL's JSON back end.
 //!
 //! For each step, the firmware sends its servo outputs as a UDP datagram and waits for a line of
 //! JSON with time, attitude, position, velocity and IMU values. The simulation publishes a boat's
@@ -229,7 +229,7 @@ pub struct Sitl {
     moments: VecDeque<Moment>,
     /// Game time of the last reply, and of the firmware's time zero.
     clock: Option<(SimTime, SimTime)>,
-    /// Last servo outputs, and the newest moment when they arrived.
+    /// The last servo outputs, and the time of the newest motion when they arrived.
     outputs: Option<(Outputs, SimTime)>,
     /// Whether the firmware is waiting for a reply.
     waits: bool,

@@ -94,8 +94,8 @@ impl GeofenceArea {
             && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
     }
 
-    /// Whether all of the straight line between two points is permitted water. The ends alone are
-    /// not enough: the outline may be concave, and a keep-out may lie between them.
+    /// Whether the whole straight line between two points lies in permitted water. The ends alone
+    /// are not enough: the outline may be concave, and a keep-out may lie between them.
     pub(crate) fn contains_way(&self, from: Ned, to: Ned) -> bool {
         self.contains(from) && self.leads_in(from, to)
     }

@@ -52,7 +52,7 @@ pub fn boat_checks(
 
 fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(fix) = seen.fix else {
-        return Check::not_done("fix", "no fix with a quality was received");
+        return Check::not_done("fix", "received no fix that states its quality");
     };
     let nav = &gateway.nav;
     let satellites = fix
@@ -187,7 +187,7 @@ fn battery(seen: &SensorCheck, gateway: &Gateway) -> Check {
             volts >= least,
             format!("{volts:.1} V, expected {least} or more"),
         ),
-        None => Check::not_done("battery", "the boat does not report it"),
+        None => Check::not_done("battery", "the boat does not report its battery"),
     }
 }
 

@@ -77,7 +77,7 @@ impl Received {
     pub fn rate_hz(&self) -> Option<f64> {
         let (first, last) = self.between?;
         let span_s = (last - first).as_s();
-        // Counts intervals, not messages: two messages within a second are one interval.
+        // Count intervals, not messages: there is one interval between two messages.
         (span_s > 0.0).then(|| (self.count - 1) as f64 / span_s)
     }
 
@@ -320,7 +320,7 @@ impl SensorCheck {
         })
     }
 
-    /// The data missing to drive the boat.
+    /// Descriptions of the data that is missing for driving the boat.
     pub fn missing(&self) -> Vec<String> {
         let mut missing = self.unmet();
         if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)

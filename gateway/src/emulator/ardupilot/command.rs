@@ -31,7 +31,7 @@ fn result_of(is_done: bool) -> MavResult {
 }
 
 impl ArduPilot {
-    /// Converts the command to the equivalent COMMAND_INT, as ArduPilot does.
+    /// Converts the command to the equivalent COMMAND_INT, as ArduPilot does, and executes it.
     pub(super) fn take_command_long(
         &mut self,
         now: SimTime,
@@ -105,7 +105,8 @@ impl ArduPilot {
         self.acknowledge(from, command.command as u16, result);
     }
 
-    /// Takes a number, because commands outside the dialect are also acknowledged.
+    /// Acknowledges a command. It is given as a number, because commands outside the dialect are
+    /// also acknowledged.
     pub(super) fn acknowledge(&mut self, from: (u8, u8), command: u16, result: MavResult) {
         let [low, high] = command.to_le_bytes();
         let payload = [low, high, result as u8, 0, 0, 0, 0, 0, from.0, from.1];
@@ -117,7 +118,7 @@ impl ArduPilot {
         );
     }
 
-    /// Changes the mode. Like Rover, it knows only its own modes.
+    /// Changes the mode. Like Rover, the boat accepts only Rover's own modes.
     pub(super) fn command_own_mode(&mut self, base_mode: MavModeFlag, number: u32) -> MavResult {
         if base_mode.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
             self.command_mode(number)

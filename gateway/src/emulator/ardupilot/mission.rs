@@ -147,7 +147,7 @@ impl MissionStore {
         if let Some(mission_type) =
             type_of(message).filter(|kind| *kind != MavMissionType::MAV_MISSION_TYPE_MISSION)
         {
-            // The reply of a board that has no fences and rally points.
+            // The reply of a board without fences or rally points.
             return Some(Some(typed_ack(
                 from,
                 MavMissionResult::MAV_MISSION_UNSUPPORTED,

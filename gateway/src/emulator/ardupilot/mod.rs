@@ -127,7 +127,7 @@ impl ArduPilot {
                 }
             }
             self.note(format!("mode {mode:?}"));
-            // Rover shows the new mode at once.
+            // Rover reports the new mode at once.
             self.send(&MavMessage::HEARTBEAT(self.heartbeat()));
         }
     }
@@ -156,7 +156,7 @@ impl ArduPilot {
         };
         let pose = own.nav.pose();
         if self.mode == RoverMode::Guided && self.set_points.expires(now) {
-            // In this mode a boat keeps station, whereas a car stops.
+            // Without a set-point in this mode, a boat keeps station, whereas a car stops.
             self.autopilot.begin(pose.at);
             self.say(MavSeverity::MAV_SEVERITY_WARNING, FORGOTTEN);
         }
@@ -185,7 +185,7 @@ impl ArduPilot {
         self.parameters.value("WP_SPEED")
     }
 
-    /// Its system number.
+    /// The boat's system number.
     fn system(&self) -> u8 {
         self.parameters.value("SYSID_THISMAV") as u8
     }
@@ -193,7 +193,8 @@ impl ArduPilot {
     /// Appends the frames to send at once.
     pub fn answers(&mut self, out: &mut Vec<u8>) {
         out.append(&mut self.outbox);
-        // Set the number here and not earlier: the reply to a new number comes from the old one.
+        // Change the system number only here: the reply to the message that sets a new number must
+        // come from the old one.
         self.writer.system = self.system();
     }
 

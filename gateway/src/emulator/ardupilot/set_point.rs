@@ -269,7 +269,7 @@ impl SetPoints {
     fn set(&mut self, now: SimTime, course: Course, speed_m_s: f64) -> Result<(), &'static str> {
         let (Course::Heading(steered) | Course::Turn(steered)) = course;
         if !steered.is_finite() || !speed_m_s.is_finite() {
-            return Err("set-point ignored: it is not finite");
+            return Err("set-point ignored: a value is not finite");
         }
         (self.guided, self.destination) = (Some((now, course, speed_m_s)), None);
         Ok(())
