@@ -3,10 +3,10 @@
 //!
 //! On one heading, a compass offset cannot be distinguished from a cross current. On several
 //! headings it can: a current is the same on all of them, whereas an offset turns with the boat.
-//! With the velocity over the ground V, the compass heading psi and the speed through the water m
-//! expected from the orders, V = k m exp(i psi) + c. The drift c (current, leeway) is the same on
-//! all headings, |k| is the fraction of the speed that the boat makes, and the angle of k is the
-//! compass offset: complex linear least squares.
+//! Let V be the velocity over the ground, psi the compass heading, and m the speed through the
+//! water expected from the orders. Then V = k m exp(i psi) + c. The drift c (current, leeway) is
+//! the same on all headings, |k| is the fraction of the speed that the boat makes, and the angle of
+//! k is the compass offset. Both are fitted by complex linear least squares.
 
 use primitives::SimTime;
 use primitives::angle::wrap_pi;
@@ -192,7 +192,8 @@ impl CompassCheck {
         let scatter_m_s = (rest.sum::<f64>() / (2.0 * count - 4.0))
             .sqrt()
             .max(SCATTER_MIN_M_S);
-        // To first order, the error of the angle of k is its cross error divided by its length.
+        // To first order, the error of the angle of k is the error across k, divided by the length
+        // of k.
         let sigma_rad = scatter_m_s / (spread.sqrt() * share.length());
         (share.length() >= SHARE_MIN && sigma_rad.is_finite())
             .then(|| (share.direction_rad(), sigma_rad))

@@ -80,7 +80,7 @@ fn next_record<'a>(rest: &mut &'a [u8]) -> Option<Record<'a>> {
     Some(Record { fields, data })
 }
 
-/// Splits off a block of bytes with its length prefix.
+/// Splits off a block of bytes, which follows its length.
 fn next_block<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let (length, after) = rest.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;

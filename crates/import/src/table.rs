@@ -19,9 +19,9 @@ const MEASURED: [(&str, Quantity); 6] = [
     ("yaw_rate_deg_s", Quantity::YawRate),
 ];
 
-/// The log of a boat as CSV with the columns of `squall identify`. It has one row for each position
-/// at which the thrust is known. Other measurements are interpolated, and commands keep their last
-/// value. Columns without any value are omitted.
+/// The log of a boat as CSV with the columns of `squall identify`. It has one row for each
+/// position, except while the thrust is unknown. Other measurements are interpolated, and commands
+/// keep their last value. Columns without any value are omitted.
 pub fn table(logs: &Logs, boat: &str) -> String {
     let times = logs
         .series(boat, Quantity::X)

@@ -31,7 +31,7 @@ const LINGER: Duration = Duration::from_millis(500);
 pub struct Settings {
     /// The game to join. `None`: the only one available.
     pub game: Option<GameName>,
-    /// The address of the sim.
+    /// The location of the sim.
     pub place: Place,
     /// Maximum time to search for the sim and to wait for free boats.
     pub wait: Duration,

@@ -73,7 +73,7 @@ pub struct Community {
     pub(crate) drawings: Vec<Msg>,
     /// Number of malformed datagrams.
     pub(crate) malformed: u64,
-    /// Values of applications that the bridge could not use.
+    /// Counts of values from applications that the bridge could not use.
     pub refusals: Refusals,
 }
 

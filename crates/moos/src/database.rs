@@ -111,7 +111,7 @@ pub struct Database {
     variables: BTreeMap<String, Msg>,
     stored: usize,
     clients: Vec<Client>,
-    /// The newest value of each variable that the bridge reads, until it has read it.
+    /// The newest value of each variable that the bridge reads, until the bridge has read it.
     heard: BTreeMap<String, Msg>,
     reads: BTreeSet<String>,
     /// Notes for the person who runs the bridge.

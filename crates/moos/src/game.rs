@@ -56,7 +56,7 @@ pub(crate) fn marker(scenario: &Scenario, i: usize, at: Ned) -> String {
     )
 }
 
-/// The label of a flag: the name of its team, and a number from the team's second flag on.
+/// The label of a flag: the name of its team, plus a number for the team's second and later flags.
 pub(crate) fn flag_label(scenario: &Scenario, i: usize) -> String {
     let flags = &scenario.field.flags;
     let team = &scenario.teams[flags[i].team.index()].name;

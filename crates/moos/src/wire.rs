@@ -191,7 +191,7 @@ impl<'a> Reader<'a> {
         Ok(f64::from_le_bytes(self.array()?))
     }
 
-    /// A length from `min` to `max`.
+    /// Reads a length, which must be from `min` to `max`.
     fn length(&mut self, min: usize, max: usize) -> Result<usize, Malformed> {
         let given = self.i32()?;
         usize::try_from(given)
@@ -345,7 +345,7 @@ pub(crate) const DRAWINGS: [&str; 6] = [
     "VIEW_MARKER",
     "VIEW_RANGE_PULSE",
 ];
-/// Number of waiting values from which on new drawings are dropped.
+/// Number of waiting values at which further drawings are dropped.
 const HEARD_MAX: usize = 1024;
 /// Maximum length of a drawing for the shoreside, bytes.
 const DRAWING_MAX: usize = 8 << 10;

@@ -30,7 +30,7 @@ pub struct Motion {
     pub roll_rad: f64,
     /// Pitch, bow up, rad.
     pub pitch_rad: f64,
-    /// Gyro and accelerometers; `None` for the truth.
+    /// Measurements of gyro and accelerometers; `None` for the true motion.
     pub imu: Option<picture::Imu>,
 }
 

@@ -13,7 +13,7 @@ const WARN: u8 = 1;
 const ERROR: u8 = 2;
 const STALE: u8 = 3;
 
-/// Silence after which a gateway counts as stale. Gateways report several times a second.
+/// Silence after which a gateway counts as stale. Gateways report once a second.
 const SILENCE: Duration = Duration::from_secs(3);
 
 /// The bridge's own status.

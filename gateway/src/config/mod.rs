@@ -220,8 +220,8 @@ pub struct Geofence {
     /// Default: the field's rectangle plus `margin_m`.
     #[schemars(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180))))]
     pub polygon: Option<Vec<[f64; 2]>>,
-    /// Polygons inside the geofence that the boat must not enter, and must be able to stop short
-    /// of.
+    /// Polygons inside the geofence that the boat must not enter; it must be able to stop before
+    /// reaching them.
     #[schemars(length(max = 50))]
     #[schemars(inner(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180)))))]
     pub keep_out: Vec<Vec<[f64; 2]>>,

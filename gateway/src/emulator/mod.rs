@@ -40,7 +40,7 @@ pub struct Plan {
     /// Time without a command after which the boat goes to standby, s; `None` means never.
     pub watchdog_s: Option<f64>,
     /// Whether the boat ignores non-integer set-points and keeps the previous one, as one known
-    /// simulator of it does.
+    /// simulator of the boat does.
     pub integers: bool,
     /// Sentences in addition to a Surveyor's.
     pub extra: Vec<Extra>,

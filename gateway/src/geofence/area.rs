@@ -8,7 +8,7 @@ use rules::field::{Field, distance_to_outline, do_meet, is_within, sides};
 use scenario::{Scenario, StartPosition};
 use thiserror::Error;
 
-/// Angle step for drawing a rounded corner, degrees; cuts off less than half a per cent of the
+/// Angle step for drawing a rounded corner, degrees. This cuts off less than half a per cent of the
 /// margin.
 const ROUND_STEP_DEG: f64 = 90.0 / 8.0;
 

@@ -1,7 +1,7 @@
 //! Splits incoming bytes into sentences, and counts what it discards.
 //!
-//! It keeps at most one sentence, in a buffer of fixed size, so no peer can make it grow. A `$`
-//! always starts a new sentence, so the next complete sentence is found after any noise.
+//! The framer keeps at most one sentence, in a buffer of fixed size, so no peer can exhaust memory.
+//! A `$` always starts a new sentence, so the next complete sentence is found after any noise.
 
 use super::checksum;
 use serde::{Deserialize, Serialize};
@@ -111,7 +111,7 @@ impl Framer {
         self.rejected = Some(Rejected { line, why });
     }
 
-    /// Handles a byte that cannot be part of a sentence: it ends an incomplete one.
+    /// Handles a byte that cannot be part of a sentence: the byte ends an incomplete sentence.
     fn stray(&mut self, byte: u8, filled: Option<usize>) {
         self.counts.garbage += 1;
         self.filled = None;

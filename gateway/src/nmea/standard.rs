@@ -27,8 +27,9 @@ pub struct Gga {
 }
 
 impl Gga {
-    /// 14 fields. The last one, the reference station, must be empty: the fleet's driver counts
-    /// fields after dropping one trailing empty field, and reads no position if there is a station.
+    /// 14 fields. The last one, the reference station, must be empty: a driver used with these
+    /// boats counts fields after dropping one trailing empty field, and reads no position if there
+    /// is a station.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Standard(&mut self.talker, "GGA"),

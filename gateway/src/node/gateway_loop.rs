@@ -561,8 +561,8 @@ impl Drop for GatewayLoop<'_> {
         // Three times, because links lose messages.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
-        // End the guard only after the message: until then, it must stop the boat if this process
-        // hangs.
+        // End the guard only after the message: until then, the guard must stop the boat if this
+        // process hangs.
         self.guarded.iter().for_each(Guarded::end);
     }
 }

@@ -79,7 +79,7 @@ impl Server {
             match listener.accept() {
                 Ok((stream, from)) => self.open(stream, from.ip()),
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-                // For example, too many open files, which may be temporary.
+                // The cause may be temporary, for example too many open files.
                 Err(_) => clock::rest(POLL),
             }
         }

@@ -32,7 +32,8 @@ use primitives::{SimTime, math};
 const HEARTBEAT_S: f64 = 1.0;
 /// Time (s) after which a mode or arming that the boat does not report is requested again.
 const AGAIN_S: f64 = 0.5;
-/// Minimum speed of a velocity that is sent, m/s: below it the direction would be a rounding error.
+/// Minimum speed of a velocity that is sent, m/s: below this, the direction would be a rounding
+/// error.
 const VELOCITY_MIN_M_S: f64 = 0.01;
 /// The messages that we need from the boat: number and rate, 1/s.
 const STREAMS: [(u32, f64); 10] = [

@@ -57,7 +57,7 @@ impl HostTime {
     }
 }
 
-/// The sentences or messages with one name.
+/// The received sentences or messages with the same name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Received {
     /// The number received.
@@ -231,7 +231,8 @@ impl SensorCheck {
             }
         });
         if days != 0 {
-            // A receiver counts weeks modulo 1024: after a rollover it is wrong by this much.
+            // A receiver counts weeks modulo 1024: after a rollover, its date is wrong by this
+            // much.
             let rollover = if days >= GPS_WEEKS_DAYS {
                 ", as after a GPS week rollover (7168 days)"
             } else {

@@ -113,7 +113,7 @@ pub enum Task {
     GoToErp,
     /// Run the uploaded mission.
     Mission,
-    /// Run a different mode of the boat.
+    /// Run another mode of the boat's own controller.
     Mode(BoatMode),
 }
 

@@ -11,7 +11,7 @@ fn notify(key: &str, number: f64) -> Msg {
     Msg::number(Kind::NOTIFY, key, number, -1.0)
 }
 
-/// A database with a client of each of these names, and their mail.
+/// A database with one client for each of these names, and the clients' mail.
 fn database(names: &[&str]) -> (Database, Vec<Arc<Watched<Mail>>>) {
     let mut database = Database::new(
         "blue_one",

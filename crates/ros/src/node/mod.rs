@@ -1,4 +1,4 @@
-//! The bridge between both networks: finds a game, publishes it to ROS 2, and drives boats as
+//! The bridge between the two networks: finds a game, publishes it to ROS 2, and drives boats as
 //! requested from ROS 2.
 //!
 //! Observing and driving use separate sessions on the game's network; ROS 2 uses a third. Only the
@@ -45,7 +45,7 @@ const SILENCE: Duration = Duration::from_secs(60);
 pub struct Settings {
     /// The game to show. `None`: the only one available.
     pub game: Option<GameName>,
-    /// The place of the sim.
+    /// The location of the sim.
     pub place: Place,
     /// The endpoint of the ROS 2 router.
     pub router: String,
@@ -106,7 +106,7 @@ pub enum RosError {
     Vehicle(#[from] UnknownVehicle),
     /// ROS 2 does not accept the name of a boat or team.
     #[error(
-        "{0:?} cannot be part of a ROS 2 topic: names of boats and teams need letters, digits and single underscores, and a letter first"
+        "{0:?} cannot be part of a ROS 2 topic: names of boats and teams must consist of letters, digits and single underscores, and start with a letter"
     )]
     Name(String),
     /// The sim is lost.

@@ -217,7 +217,8 @@ impl ArduPilot {
             .for_each(|place| self.autopilot.set_home(place));
     }
 
-    /// Changes the speed in modes that drive to positions; returns whether the current mode is one.
+    /// Changes the speed in modes that drive to positions. Returns whether the current mode is such
+    /// a mode.
     fn change_speed(&mut self, speed_m_s: f64) -> bool {
         match self.mode {
             RoverMode::Guided => self.set_points.set_speed(speed_m_s),
@@ -229,8 +230,8 @@ impl ArduPilot {
         }
     }
 
-    /// Drives to a position, at the given speed if any. Like Rover, it accepts a speed only if the
-    /// boat is already driving to a position.
+    /// Drives to a position, at the given speed if any. Like Rover, the boat accepts a speed only
+    /// if it is already driving to a position.
     fn command_reposition(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
         let may_change_mode = command.param2 as i32 & CHANGE_MODE != 0;
         let at_e7 = (command.x, command.y);

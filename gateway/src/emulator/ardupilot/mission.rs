@@ -243,7 +243,7 @@ impl MissionStore {
         ack(from, MavMissionResult::MAV_MISSION_ACCEPTED)
     }
 
-    /// An item; the home can always be read.
+    /// The item with this number, if it exists. The home (item 0) always does.
     fn item(
         &self,
         from: (u8, u8),
@@ -349,7 +349,7 @@ fn float_from_int(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
     }
 }
 
-/// The result of an upload or of a single item.
+/// The acknowledgement of an upload or of a single item, with its result.
 pub(super) fn ack(from: (u8, u8), mavtype: MavMissionResult) -> MavMessage {
     typed_ack(from, mavtype, MavMissionType::MAV_MISSION_TYPE_MISSION)
 }

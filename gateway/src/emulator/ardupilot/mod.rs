@@ -1,6 +1,6 @@
 //! An emulated ArduPilot Rover boat: MAVLink commands in, telemetry out, without sockets or clocks.
 //!
-//! It follows Rover's documentation for boats: it is driven in mode GUIDED when armed, drops a
+//! The boat follows Rover's documentation: it is driven in mode GUIDED when armed, drops a
 //! set-point after three seconds, accepts messages for its own system and broadcasts, and
 //! acknowledges commands.
 
@@ -104,7 +104,7 @@ impl ArduPilot {
 
     /// Receives bytes from a link.
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
-        // Move it out during the call, because the callback needs the whole boat.
+        // Move the framer out during the call, because the callback needs the whole boat.
         let mut framer = std::mem::take(&mut self.framer);
         framer.push_frames(bytes, &mut |frame| match frame {
             Frame::Read(received) => self.apply(now, &received),

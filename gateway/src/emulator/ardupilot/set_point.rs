@@ -46,9 +46,9 @@ struct Target {
     mask: PositionTargetTypemask,
     /// The position, if valid.
     place: Option<Ned>,
-    /// Velocity along the axes of its frame, m/s.
+    /// Velocity along the axes of the message's frame, m/s.
     velocity: [f32; 2],
-    /// Yaw in its frame, rad, and rate of turn, rad/s.
+    /// Yaw in that frame, rad, and rate of turn, rad/s.
     yaw: [f32; 2],
     /// The true heading of the first axis of the frame, rad.
     frame_rad: f64,
@@ -71,11 +71,11 @@ pub(super) fn is_global(frame: MavFrame) -> bool {
 /// The set-points in force.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SetPoints {
-    /// In mode GUIDED: when it arrived, the steering target, and the speed, m/s.
+    /// In mode GUIDED: when the set-point arrived, the steering target, and the speed, m/s.
     pub(super) guided: Option<(SimTime, Course, f64)>,
     /// The destination in mode GUIDED, if a position was commanded.
     destination: Option<Ned>,
-    /// The commanded speed on the way to it, if any, m/s.
+    /// The commanded speed on the way to the destination, if any, m/s.
     speed_m_s: Option<f64>,
     /// The input of a remote control over MAVLink: throttle and steering, -1 to 1.
     pub(super) manual: Option<(SimTime, f64, f64)>,
@@ -187,9 +187,9 @@ impl SetPoints {
         self.follow(now, &target, speed_max_m_s)
     }
 
-    /// Sets a position, or a speed with a rate of turn or a heading: a separate one, or that of the
-    /// velocity. Follows Rover's `handle_set_position_target_local_ned`, including its sign of the
-    /// speed.
+    /// Sets a position, or a speed with a rate of turn or a heading. Without a separate heading,
+    /// that of the velocity is used. Follows Rover's `handle_set_position_target_local_ned`,
+    /// including the sign that it gives the speed.
     fn follow(
         &mut self,
         now: SimTime,
