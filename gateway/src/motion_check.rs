@@ -1,9 +1,9 @@
 //! Checks a boat's instruments against each other: its compass against its course, its reported
 //! speed against its positions.
 //!
-//! The faults checked for are conditions that no sea can cause: a compass that does not change in
-//! any digit while the course turns far, and positions that move faster than the reported speed.
-//! Leeway and current cause neither.
+//! It checks only for faults that waves, leeway and current cannot imitate: a compass that does not
+//! change in any digit while the course turns far, and positions that move faster than the reported
+//! speed.
 
 use crate::supervisor::NavFault;
 use primitives::SimTime;

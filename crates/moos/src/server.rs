@@ -1,8 +1,8 @@
 //! A MOOSDB on a TCP port: threads and sockets around a [`Database`].
 //!
-//! Each client has a thread that reads and, unless the client is synchronous, one that writes. The
-//! database is never locked while waiting for a client: a client that does not read loses its mail,
-//! then its connection.
+//! Each client has a thread that reads and, unless the client is synchronous, one that writes. No
+//! thread locks the database while it waits for a client: a client that does not read loses its
+//! mail, then its connection.
 
 use crate::clock::MoosClock;
 use crate::database::{CLIENTS_MAX, Database};

@@ -124,7 +124,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             log.remark(format!("{}: looking for the game: {reason}", args.vehicle))
         }
         NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
-        // Only emulated boats have other ports.
+        // Only emulated boats report this.
         NodeEvent::Listening { .. } => {}
         NodeEvent::ControlPort {
             address: control,

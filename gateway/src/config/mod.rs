@@ -41,7 +41,7 @@ pub struct Gateway {
     pub order_ttl_s: f64,
     /// Limits on set-points.
     pub limits: Limits,
-    /// Requirements on navigation; a violation stops the boat.
+    /// Requirements for navigation data; a violation stops the boat.
     pub nav: NavWatch,
     /// The area that the boat must not leave.
     pub geofence: Geofence,
@@ -191,7 +191,7 @@ pub struct Limits {
 /// Maximum number of corners of a geofence polygon: every status contains all of them.
 const CORNERS_MAX: usize = 100;
 
-/// Requirements on navigation; a violation stops the boat.
+/// Requirements for navigation data; a violation stops the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NavWatch {
     /// Maximum age of fix and heading, s.

@@ -59,7 +59,7 @@ impl Port {
         }
     }
 
-    /// Waits for bytes, at most one tick.
+    /// Waits at most one tick for bytes.
     pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Received> {
         let read = match self {
             Port::Tcp(stream) => (&mut &*stream).read(buffer),

@@ -332,7 +332,7 @@ impl MissionSettings {
         }
     }
 
-    /// The settings as written: a whole percentage.
+    /// The settings as written: the throttle is a whole percentage.
     pub(super) fn rounded(self) -> MissionSettings {
         MissionSettings {
             throttle_pct: self.throttle_pct.round(),

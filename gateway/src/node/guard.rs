@@ -101,7 +101,7 @@ impl Guarded {
         }
     }
 
-    /// Passes on a new link, or the loss of the link.
+    /// Passes a new link to the guard, or tells it that the link is lost.
     pub(super) fn link(&self, descriptor: Option<BorrowedFd<'_>>) {
         self.send(
             &[if descriptor.is_some() { LINK } else { NO_LINK }],

@@ -197,7 +197,7 @@ impl Boat {
         }
         let is_fresh = |at: SimTime| (now - at).as_s() <= TARGET_AGE_MAX_S;
         let mode = match shown.mode {
-            // In any mode, since a boat that is not armed does not move.
+            // Whatever the mode, a boat that is not armed does not move.
             _ if is_ours && !is_armed => Mode::Standby,
             RoverMode::Hold => Mode::Standby,
             // We never send the boat a position.

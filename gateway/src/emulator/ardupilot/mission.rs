@@ -77,7 +77,7 @@ impl MissionStore {
             .then(|| before.iter().filter(|item| is_waypoint(item)).count() as u16 + 1)
     }
 
-    /// The item that leads to a waypoint.
+    /// `MISSION_CURRENT` with the number of the item that leads to a waypoint.
     pub(super) fn current(&self, waypoint: u16) -> MavMessage {
         let waypoints = self
             .items

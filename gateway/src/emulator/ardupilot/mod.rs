@@ -1,7 +1,7 @@
 //! An emulated ArduPilot Rover boat: MAVLink commands in, telemetry out, without sockets or clocks.
 //!
 //! The boat follows Rover's documentation: it is driven in mode GUIDED when armed, drops a
-//! set-point after three seconds, accepts messages for its own system and broadcasts, and
+//! set-point after three seconds, accepts broadcasts and messages addressed to its own system, and
 //! acknowledges commands.
 
 mod command;
@@ -236,7 +236,7 @@ impl ArduPilot {
                 self.station.heard_at = Some(now);
                 self.set_points.take_channels(now, channels);
             }
-            // Messages from others are ignored, as by Rover.
+            // Like Rover, ignore these messages from any system but the ground station.
             MavMessage::HEARTBEAT(_)
             | MavMessage::MANUAL_CONTROL(_)
             | MavMessage::RC_CHANNELS_OVERRIDE(_) => {}

@@ -240,7 +240,8 @@ impl SetPoints {
         place.is_finite()
     }
 
-    /// Sets the speed (m/s) on the way to a position; returns whether there is a position.
+    /// Sets the speed (m/s) on the way to a position. Returns `false` if there is no position or
+    /// the speed is too low.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
         let is_taken = self.destination.is_some() && speed_m_s >= SPEED_MIN_M_S;
         if is_taken {
@@ -296,7 +297,8 @@ impl SetPoints {
     pub(super) fn manual(&self, now: SimTime) -> Order {
         match self.manual {
             Some((at, throttle, steering)) if (now - at).as_s() <= HELD_S => {
-                // PILOT_STEER_TYPE 0: when going astern, the remote control steers the stern.
+                // PILOT_STEER_TYPE 0: astern, the same stick position turns the boat the other way,
+                // as in a car.
                 let side = if throttle < 0.0 { -1.0 } else { 1.0 };
                 autopilot::thrust(100.0 * throttle, 100.0 * side * steering)
             }
