@@ -177,7 +177,7 @@ struct State {
 
 #[derive(Serialize)]
 struct Imu {
-    /// About the axes forward, to starboard and down, rad/s.
+    /// Rates of turn about the axes forward, to starboard and down, rad/s.
     gyro: [f64; 3],
     /// Specific force along these axes, m/s².
     accel_body: [f64; 3],

@@ -29,7 +29,7 @@ pub(super) const HEARTBEAT: Duration = Duration::from_millis(100);
 /// Time without a heartbeat after which the gateway is treated as hung.
 const SILENCE: Duration = Duration::from_millis(400);
 /// Time without a heartbeat after which the loop itself assumes that the guard has stopped the
-/// boat: shorter, so that the loop never misses such a stop.
+/// boat: shorter than [`SILENCE`], so that the loop never misses such a stop.
 pub(super) const HUNG: Duration = Duration::from_millis(350);
 /// Interval at which the guard repeats standby while the gateway hangs and after it has died.
 const AGAIN: Duration = Duration::from_millis(100);

@@ -232,7 +232,7 @@ impl SetPoints {
         )
     }
 
-    /// Goes to a position, if valid.
+    /// Goes to a position; returns whether it is valid.
     pub(super) fn go_to(&mut self, place: Ned) -> bool {
         if place.is_finite() {
             (self.guided, self.destination) = (None, Some(place));
