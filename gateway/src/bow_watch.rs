@@ -44,7 +44,7 @@ impl BowWatch {
         if others.iter().any(is_in) {
             self.blocked_at = now;
         }
-        // Not a latched failsafe: boats in a game often come close, and continue when the box has
+        // Not a latched failsafe: boats in a game often come close, and continue once the box has
         // been empty for a moment.
         (now - self.blocked_at).as_s() < self.rules.clear_s || self.blocked_at == now
     }

@@ -3,10 +3,10 @@
 //!
 //! On one heading, a compass offset cannot be distinguished from a cross current. On several
 //! headings it can: a current is the same on all of them, whereas an offset turns with the boat.
-//! With the velocity over the ground V, the compass heading psi and the speed through the water m
-//! expected from the orders, V = k m exp(i psi) + c. The drift c (current, leeway) is the same on
-//! all headings, |k| is the fraction of the speed that the boat makes, and the angle of k is the
-//! compass offset: complex linear least squares.
+//! Let V be the velocity over the ground, psi the compass heading, and m the speed through the
+//! water expected from the orders. Then V = k m exp(i psi) + c. The drift c (current, leeway) is
+//! the same on all headings, |k| is the fraction of the speed that the boat makes, and the angle of
+//! k is the compass offset. Both are fitted by complex linear least squares.
 
 use primitives::SimTime;
 use primitives::angle::wrap_pi;
@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 /// Number and duration (s) of the pieces of a straight run; the boat settles during the first.
 const PIECES: usize = 4;
 const PIECE_S: f64 = 1.5;
-/// Maximum spread of the headings of its pieces, rad.
+/// Maximum spread of the headings of a run's pieces, rad.
 const STRAIGHT_RAD: f64 = 0.3;
 /// Minimum ordered speed of a run, m/s.
 const SPEED_FROM_M_S: f64 = 0.7;
@@ -86,8 +86,8 @@ impl CompassCheck {
             self.interrupt();
             self.speed_m_s = ordered_m_s;
         } else {
-            // A Surveyor takes its log speed from GPS, so its speed through the water is unknown.
-            // The delayed order replaces it; only its direction matters, not its scale.
+            // A Surveyor takes its reported speed from GPS, so its speed through the water is
+            // unknown. The delayed order replaces it; only its direction matters, not its scale.
             self.speed_m_s += (ordered_m_s - self.speed_m_s) * (gap_s / SPEED_LAG_S).min(1.0);
         }
         let (began, _) = self.began.unwrap_or((now, now));
@@ -192,7 +192,8 @@ impl CompassCheck {
         let scatter_m_s = (rest.sum::<f64>() / (2.0 * count - 4.0))
             .sqrt()
             .max(SCATTER_MIN_M_S);
-        // To first order, the error of the angle of k is its cross error divided by its length.
+        // To first order, the error of the angle of k is the error across k, divided by the length
+        // of k.
         let sigma_rad = scatter_m_s / (spread.sqrt() * share.length());
         (share.length() >= SHARE_MIN && sigma_rad.is_finite())
             .then(|| (share.direction_rad(), sigma_rad))

@@ -1,4 +1,5 @@
-//! Declination: the angle of the compass east of true north, from the World Magnetic Model of 2025.
+//! Declination: the angle of magnetic north east of true north, from the World Magnetic Model of
+//! 2025.
 //!
 //! The model covers only the field of the earth's core. In some places, iron in the ground deflects
 //! a compass by several more degrees, and a boat's compass has its own errors.

@@ -7,9 +7,9 @@
 //!
 //! - On a plane that touches the ellipsoid at the datum (ENU), distances are `s^3 / 6 R^2` shorter:
 //!   4 µm at 1 km, 4 mm at 10 km.
-//! - MOOS's `LatLong2LocalGrid` is a different map, of a sphere with the ellipsoid's radius at that
-//!   latitude: 200 m from a datum at 42 degrees north, the two differ by 0.4 m. Boats on one field
-//!   must use the same map.
+//! - MOOS's `LatLong2LocalGrid` is a different map, of a sphere with the ellipsoid's radius at the
+//!   position's latitude: 200 m from a datum at 42 degrees north, the two differ by 0.4 m. Boats on
+//!   one field must use the same map.
 
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use primitives::{LatLon, Ned};

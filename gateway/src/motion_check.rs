@@ -1,9 +1,9 @@
 //! Checks a boat's instruments against each other: its compass against its course, its reported
 //! speed against its positions.
 //!
-//! The faults checked for are conditions that no sea can cause: a compass that does not change in
-//! any digit while the course turns far, and positions that move faster than the reported speed.
-//! Leeway and current cause neither.
+//! It checks only for faults that waves, leeway and current cannot imitate: a compass that does not
+//! change in any digit while the course turns far, and positions that move faster than the reported
+//! speed.
 
 use crate::supervisor::NavFault;
 use primitives::SimTime;
@@ -11,7 +11,7 @@ use primitives::angle::wrap_pi;
 use primitives::frame::Ned;
 use std::collections::VecDeque;
 
-/// Minimum time (s) over which positions yield a speed.
+/// Maximum and minimum time (s) over which positions yield a speed.
 const WINDOW_S: f64 = 4.0;
 const WINDOW_MIN_S: f64 = 2.0;
 /// Maximum number of positions stored: 20 a second.
@@ -129,7 +129,7 @@ impl MotionCheck {
         Some((newer - older).scaled(1.0 / (newer_s - older_s)))
     }
 
-    /// The current fault.
+    /// The current fault, if any.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
         let turned = self
             .shown

@@ -134,7 +134,7 @@ impl NavEstimator {
         }
     }
 
-    /// The order that the boat fails to follow.
+    /// The fault of a boat that fails to follow its orders, if any.
     pub(crate) fn thrust_fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.known.thrust.fault(now)
     }
@@ -181,7 +181,7 @@ impl NavEstimator {
         }
     }
 
-    /// The current navigation fault.
+    /// The current navigation fault, if any.
     pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
         let Some(fix) = &self.known.fix else {
             return Some(self.known.doubt.unwrap_or(NavFault::NoFix));

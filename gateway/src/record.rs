@@ -31,8 +31,8 @@ pub(crate) struct RecordedEvent {
     pub(crate) event: Event,
 }
 
-/// The opening of a recording by a gateway with this plan, started at this UTC time (ns); the
-/// program was built from this commit.
+/// The opening of a recording: the gateway's plan, the UTC time of its start (ns since 1970), and
+/// the commit from which the program was built.
 pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
     let plan_json = serde_json::to_string(plan).expect("a plan is JSON");
     let facts = [

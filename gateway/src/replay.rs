@@ -34,7 +34,7 @@ pub struct Replay {
 /// A difference between a recording and its replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// The time.
+    /// The time of the difference, by the gateway's clock.
     pub at: SimTime,
     /// The recorded output.
     pub recorded: String,

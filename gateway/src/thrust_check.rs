@@ -30,8 +30,8 @@ pub enum ThrustFault {
         "the thrusters: the boat makes no way under thrust: {0:.1} m/s ahead on average over {WAY_S} s"
     )]
     NoWay(f64),
-    /// The boat goes astern instead of ahead, or does not turn to its ordered heading: error of its
-    /// course, degrees.
+    /// The boat goes astern instead of ahead, or does not turn to its ordered heading. This is the
+    /// error of its course, degrees.
     #[error("the boat moves against its orders: its course is off by {0:.0} degrees")]
     Against(f64),
 }
@@ -280,7 +280,7 @@ impl ThrustCheck {
         }
     }
 
-    /// The order that the boat fails to follow while driven.
+    /// The fault of a boat that is driven and fails to follow its orders, if any.
     pub(crate) fn fault(&self, now: SimTime) -> Option<ThrustFault> {
         self.fault.filter(|_| {
             self.last

@@ -13,7 +13,7 @@ const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 const MESSAGE: u8 = 2;
 const CHUNK: u8 = 5;
 const CONNECTION: u8 = 7;
-/// Maximum size of a decompressed chunk, bytes; `rosbag record` writes 768 kB.
+/// Maximum number of bytes decompressed from a chunk; `rosbag record` writes chunks of 768 kB.
 const CHUNK_MAX: u64 = 256 << 20;
 
 /// A record: the fields of its header, and its data.
@@ -80,7 +80,7 @@ fn next_record<'a>(rest: &mut &'a [u8]) -> Option<Record<'a>> {
     Some(Record { fields, data })
 }
 
-/// Splits off a block of bytes with its length prefix.
+/// Splits off a block of bytes, which follows its length.
 fn next_block<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let (length, after) = rest.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;

@@ -1,4 +1,4 @@
-//! Tables, with the columns of the user's logger.
+//! CSV tables. Columns are recognised by their names or mapped by the user.
 
 use crate::{Found, ImportError, Quantity, file_error};
 use primitives::LatLon;
@@ -11,8 +11,8 @@ use time::format_description::well_known::Rfc3339;
 use trial::{Sheet, plain_head};
 
 /// The meanings of columns: the name in `--map`, the names that loggers use (in lower case, without
-/// unit), and the unit assumed if neither the map nor the column's name has one. For times, their
-/// magnitude then determines the unit.
+/// a unit), and the unit assumed if neither the map nor the column's name states one. For times
+/// without a unit, the magnitude of each value determines it.
 const MEANINGS: [(&str, &[&str], &str); 15] = [
     (
         "t",
@@ -47,7 +47,8 @@ const MEANINGS: [(&str, &[&str], &str); 15] = [
     ("starboard", &["starboard"], "pct"),
 ];
 
-/// Units, with the factor to the unit used here: s, degrees, metres, per cent.
+/// Units, each with the factor that converts it to the unit used here: s, m, m/s, degrees, degrees
+/// per second or per cent.
 const UNITS: [(&str, f64); 18] = [
     ("s", 1.0),
     ("ms", 1e-3),
@@ -132,11 +133,12 @@ fn factor_of(unit: &str) -> Option<f64> {
 #[derive(Clone, Copy)]
 struct Column {
     index: usize,
-    /// Factor to the unit used here; `None` if the unit is unknown.
+    /// Factor that converts to the unit used here; `None` if the unit is unknown.
     factor: Option<f64>,
 }
 
-/// Finds the column with a meaning: the mapped one, or one with a usual name, with or without unit.
+/// Finds the column with a meaning: the mapped one, or else one with a usual name, with or without
+/// a unit.
 fn find(sheet: &Sheet, map: Option<&Map>, wanted: &str) -> Result<Option<Column>, ImportError> {
     let heads = sheet.heads();
     let (_, names, default) = MEANINGS
@@ -197,7 +199,7 @@ pub(crate) fn read(path: &Path, boat: &str, map: Option<&Map>) -> Result<Found, 
     let column = |wanted| find(&sheet, map, wanted);
     let Some(time) = column("t")? else {
         let message = format!(
-            "no column of times; name one with --map t=COLUMN; columns found: {}",
+            "no time column; name one with --map t=COLUMN; columns found: {}",
             sheet.heads().join(", ")
         );
         return Err(sheet.mistake(Some(1), message).into());
@@ -276,8 +278,8 @@ pub(crate) fn read(path: &Path, boat: &str, map: Option<&Map>) -> Result<Found, 
     Ok(found)
 }
 
-/// Seconds per unit of a time whose unit is unknown, judged by its magnitude as a UNIX time of this
-/// century.
+/// Seconds per unit of a time that states no unit, guessed from its magnitude. Large numbers are
+/// assumed to be UNIX times of this century.
 fn second_per_unit(number: f64) -> f64 {
     match number.abs() {
         size if size > 1e17 => 1e-9,
@@ -294,7 +296,7 @@ pub(crate) fn time_of(text: &str) -> Option<f64> {
     number.or_else(|| date_and_time(text))
 }
 
-/// A date and time in ISO 8601, UTC unless it has an offset, s since 1970.
+/// Converts a date and time in ISO 8601 to s since 1970. Without an offset, it is in UTC.
 fn date_and_time(text: &str) -> Option<f64> {
     let text = text.trim();
     let with_offset = OffsetDateTime::parse(&text.replacen(' ', "T", 1), &Rfc3339);

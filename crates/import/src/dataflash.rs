@@ -1,4 +1,5 @@
-//! ArduPilot's on-board logs (`.bin`). Times are from boot until the GPS provides UTC.
+//! ArduPilot's on-board logs (`.bin`). Times count from boot; they are converted to UTC if the GPS
+//! provides it.
 
 use crate::servo::Servos;
 use crate::{Found, ImportError, Quantity, file_error};
@@ -60,7 +61,7 @@ pub(crate) fn read(path: &Path, boat: &str) -> Result<Found, ImportError> {
             .push("damaged: the rest of the log cannot be read".to_owned());
     }
     if !found.has_utc {
-        let note = "the GPS had no time; times are from boot";
+        let note = "the GPS provided no time; times count from boot";
         found.notes.push(note.to_owned());
     }
     if found.logs.series(boat, Quantity::Port).is_some() && !servos.are_known() {
@@ -73,7 +74,7 @@ struct Log<'a> {
     boat: &'a str,
     found: Found,
     servos: Servos,
-    /// UTC at boot.
+    /// UNIX time at boot, s; `None` until the GPS has provided it.
     utc_offset_s: Option<f64>,
 }
 
@@ -119,7 +120,7 @@ impl Log<'_> {
                     self.found.positions.push(self.boat, 0, at_s, at);
                 }
             }
-            // Status 3: a fix in three dimensions.
+            // Status 3: a 3D fix.
             "GPS" if number("Status").is_some_and(|status| status >= 3.0) => {
                 push(Quantity::Height, 0, number("Alt"));
                 if let Some(at) = position {

@@ -21,7 +21,7 @@ struct Position {
 }
 
 impl Positions {
-    /// Adds a position if it is on the globe. Receivers without a fix report 0, 0.
+    /// Adds a position if it is valid. Position 0, 0 is not: receivers without a fix report it.
     pub(crate) fn push(&mut self, boat: &str, source: u8, at_s: f64, at: LatLon) {
         let is_on_globe = at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0;
         if is_on_globe && (at.lat_deg, at.lon_deg) != (0.0, 0.0) {
@@ -42,8 +42,8 @@ impl Positions {
         self.0.iter_mut().for_each(|position| position.at_s += by_s);
     }
 
-    /// Adds the positions to the logs, in metres from the datum, which defaults to the first
-    /// position.
+    /// Adds the positions to the logs, in metres from `datum`, or else from the logs' own datum, or
+    /// else from the earliest position.
     pub(crate) fn place(self, logs: &mut Logs, datum: Option<LatLon>) {
         let first = self.0.iter().min_by(|a, b| a.at_s.total_cmp(&b.at_s));
         let Some(datum) = datum.or(logs.datum).or(first.map(|first| first.at)) else {
@@ -66,7 +66,7 @@ impl Positions {
 }
 
 /// Adds quantities derived from other measurements: velocities along the boat's axes from those
-/// over the ground, a heading from the course. Returns notes about estimates.
+/// over the ground, and a heading from the course. Returns notes about estimates.
 pub(crate) fn resolve_motion(logs: &mut Logs) -> Vec<String> {
     let mut notes = vec![];
     for boat in logs.boats() {
@@ -106,7 +106,7 @@ pub(crate) fn resolve_motion(logs: &mut Logs) -> Vec<String> {
     notes
 }
 
-/// Velocities over the ground from positions, by central differences.
+/// Adds velocities over the ground, computed from positions by central differences.
 fn add_speeds_of_track(logs: &mut Logs, boat: &str) {
     for (axis, velocity) in [
         (Quantity::X, Quantity::East),

@@ -6,29 +6,29 @@ use std::path::Path;
 
 /// Number of bytes read to recognise a format.
 const HEAD: u64 = 4096;
-/// UNIX times that a log can have, µs: from 2000 to 2100.
+/// Plausible UNIX times in a log, µs: from 2000 to 2100.
 pub(crate) const TIMES_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
-/// The first bytes of frames of MAVLink 1 and 2.
+/// The first byte of a frame in MAVLink 1 and in MAVLink 2.
 const MAVLINK_STARTS: [u8; 2] = [0xFE, 0xFD];
 
 /// The format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// A log of MOOS.
+    /// A MOOS log.
     Alog,
-    /// An on-board log of ArduPilot.
+    /// An ArduPilot on-board log.
     Dataflash,
-    /// A telemetry log of MAVLink: frames with UNIX times.
+    /// A MAVLink telemetry log: frames, each preceded by its UNIX time.
     Tlog,
     /// A ROS 2 bag in MCAP.
     Mcap,
     /// A ROS 1 bag.
     Bag1,
-    /// A Squall recording, of a game or of a gateway.
+    /// A Squall recording of a game or of a gateway.
     Squall,
-    /// Sentences of NMEA 0183.
+    /// NMEA 0183 sentences.
     Nmea,
-    /// A table.
+    /// A CSV table.
     Csv,
 }
 
@@ -47,11 +47,11 @@ impl Format {
         }
     }
 
-    /// Recognises the format of a file. Squall's recordings are MCAP files, too; only reading the
-    /// whole file tells them apart.
+    /// Recognises the format of a file. Squall's recordings are MCAP files too, so they are
+    /// reported as [`Format::Mcap`]; only [`read`](crate::read) tells them apart.
     ///
     /// # Errors
-    /// If the file cannot be read, or has a format that must be converted first.
+    /// If the file is empty, cannot be read, or must first be converted or decompressed.
     pub fn of(path: &Path) -> Result<Format, ImportError> {
         let mut head = vec![];
         let read = primitives::input_file::open(path)
@@ -87,7 +87,7 @@ fn is_tlog(head: &[u8]) -> bool {
             .is_some_and(|byte| MAVLINK_STARTS.contains(byte))
 }
 
-/// Whether a line contains a sentence with a checksum.
+/// Whether a line contains a sentence with a valid checksum.
 fn has_sentences(head: &[u8]) -> bool {
     let mut framer = gateway::nmea::Framer::new();
     let mut sentences = 0;

@@ -1,4 +1,4 @@
-//! Reads logs of other programs: one game from the logs of one or more boats.
+//! Reads logs from other programs, and combines the logs of one or more boats into one game.
 //!
 //! | format | recognised by | position, heading and speed from | commands from |
 //! |---|---|---|---|
@@ -11,7 +11,7 @@
 //! | CSV | everything else | columns, see [`Map`] | columns |
 //!
 //! All become [`Logs`], which [`Logs::recording`] turns into a recording, and [`table`] into the
-//! table that `squall identify` reads. Clocks are UTC where the log contains it.
+//! table that `squall identify` reads. Times are in UTC if the log provides it.
 
 mod bag1;
 mod csv;
@@ -49,10 +49,10 @@ pub enum ImportError {
         /// The reason.
         reason: String,
     },
-    /// A table is invalid; with file, line and column.
+    /// A table is invalid; names the file, line and column.
     #[error(transparent)]
     Table(#[from] trial::Mistake),
-    /// A recording or a MOOS log is invalid; with its file.
+    /// A recording or a MOOS log is invalid; names the file.
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }
@@ -62,7 +62,7 @@ pub enum ImportError {
 pub struct Input {
     /// The file.
     pub path: PathBuf,
-    /// The name of its boat; `None` to take it from the log, or else from the file's name.
+    /// The name of the boat; `None` to take it from the log, or else from the file's name.
     pub boat: Option<String>,
 }
 
@@ -77,7 +77,7 @@ pub struct Imported {
     pub notes: Vec<String>,
 }
 
-/// What a reader found in a file.
+/// The data that a reader found in a file.
 #[derive(Default)]
 struct Found {
     logs: Logs,
@@ -88,8 +88,8 @@ struct Found {
     notes: Vec<String>,
 }
 
-/// Reads the logs of a game. `datum` is that of the game's field, if the game is known; otherwise
-/// x = y = 0 is the first position.
+/// Reads the logs of a game. `datum` is that of the game's field, if the game is known. Otherwise
+/// the datum is that of the logs, or else the first position.
 ///
 /// # Errors
 /// [`ImportError`] with the file and the reason.
@@ -120,7 +120,7 @@ pub fn read(
             Format::Csv => csv::read(path, &boat, map)?,
         };
         if inputs.len() > 1 && !found.has_utc {
-            let reason = "it contains no UTC, so its clock cannot be aligned with other logs; import it alone";
+            let reason = "the log contains no UTC times, so it cannot be aligned with other logs; import it alone";
             return Err(file_error(path, reason));
         }
         let named = found.notes.into_iter();
@@ -135,7 +135,7 @@ pub fn read(
     let notes = earth::resolve_motion(&mut imported.logs);
     imported.notes.extend(notes);
     if imported.logs.boats().is_empty() {
-        let reason = "no position of a boat found";
+        let reason = "no boat positions found";
         let path = inputs.first().map_or(Path::new(""), |input| &input.path);
         return Err(file_error(path, reason));
     }

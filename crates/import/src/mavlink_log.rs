@@ -10,7 +10,7 @@ use primitives::math::sin_cos_deg;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// System number of ground stations.
+/// The system number that ground stations use.
 const GROUND_STATION: u8 = 255;
 
 /// Reads a telemetry log, whose boats are named after their system numbers unless `boat` is given.
@@ -27,7 +27,7 @@ pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<Found, ImportError
         let time_us = u64::from_be_bytes(*time);
         let length = frame_length(frame).filter(|_| TIMES_US.contains(&time_us));
         let Some(length) = length else {
-            // Not a frame here: try at the next byte.
+            // No frame starts here: try the next byte.
             skipped += 1;
             rest = &rest[1..];
             continue;
@@ -50,7 +50,7 @@ pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<Found, ImportError
     Ok(found)
 }
 
-/// The length of the frame with which these bytes begin.
+/// The length of the frame at the start of these bytes; `None` if no frame starts here.
 fn frame_length(bytes: &[u8]) -> Option<usize> {
     match *bytes {
         [0xFE, length, ..] => Some(usize::from(length) + 8),
@@ -65,19 +65,19 @@ fn frame_length(bytes: &[u8]) -> Option<usize> {
 #[derive(Default)]
 pub(crate) struct Vehicles {
     servos: BTreeMap<u8, Servos>,
-    /// Whether outputs were read without their parameters.
+    /// Whether servo outputs were read without their parameters.
     guesses: bool,
 }
 
 impl Vehicles {
-    /// Adds a note if the servo outputs of a boat are guessed.
+    /// Adds a note if the functions of a boat's servo outputs were guessed.
     pub(crate) fn note(&self, found: &mut Found) {
         if self.guesses {
             found.notes.push(Servos::UNKNOWN.to_owned());
         }
     }
 
-    /// Adds the measurements in a message of a boat.
+    /// Adds the measurements in a boat's message.
     pub(crate) fn add(
         &mut self,
         found: &mut Found,

@@ -1,4 +1,4 @@
-//! MCAP files: Squall's recordings, and bags of ROS 2.
+//! MCAP files: Squall's recordings and ROS 2 bags.
 
 use crate::ros::{Bag, Encoding};
 use crate::{Format, Found, ImportError, file_error, squall};
@@ -6,7 +6,7 @@ use recording::RecordingError;
 use recording::logs::name_of;
 use std::path::Path;
 
-/// Reads a file, and returns which of the two it is.
+/// Reads a file. Returns its data, and whether it is a recording or a bag.
 pub(crate) fn read(path: &Path, boat: Option<&str>) -> Result<(Found, Format), ImportError> {
     match recording::Bag::open(path) {
         Ok(bag) => {

@@ -1,5 +1,5 @@
-//! Logs of NMEA 0183 sentences. The time is that of receipt, if it precedes the sentence in its
-//! line, or else that of the last sentence with a time.
+//! Logs of NMEA 0183 sentences. The time of a sentence is its time of receipt, if the line begins
+//! with one. Otherwise it is the time in the newest sentence that contains one.
 
 use crate::csv::time_of;
 use crate::{Found, ImportError, Quantity, bytes_of};
@@ -50,7 +50,7 @@ pub(crate) fn read(path: &Path, boat: &str) -> Result<Found, ImportError> {
     if !found.has_utc {
         found
             .notes
-            .push("no date; times are of an unknown day".to_owned());
+            .push("no date found; times are not in UTC".to_owned());
     }
     if sentences.is_magnetic {
         let note = "magnetic headings without variation are used as true headings";
@@ -63,9 +63,10 @@ pub(crate) fn read(path: &Path, boat: &str) -> Result<Found, ImportError> {
 pub(crate) struct Sentences {
     boat: String,
     framer: Framer,
-    /// The last time of day, and its time in the log, s.
+    /// The newest time of day in a sentence, and the corresponding time in the log, s.
     last: Option<(TimeOfDay, f64)>,
-    /// UTC of the midnight from which the times of day count, s, once a date is known.
+    /// UNIX time of the midnight from which times in the log count, s; `None` until a date is
+    /// known.
     midnight_s: Option<f64>,
     is_magnetic: bool,
     is_utc: bool,
@@ -96,7 +97,7 @@ impl Sentences {
         }
     }
 
-    /// The time in a sentence, or the last one, s.
+    /// The time in a sentence, or else in the newest sentence with a time, s.
     fn time(&mut self, sentence: &Sentence) -> Option<f64> {
         let (time, date) = match sentence {
             Sentence::Rmc(rmc) => (rmc.time, rmc.date),
@@ -180,7 +181,7 @@ impl Sentences {
     }
 }
 
-/// Velocity north and east, m/s; at rest there is no course.
+/// Velocity north and east, m/s. At rest, it is zero even without a course.
 fn velocity(speed_kn: Option<f64>, course_deg: Option<f64>) -> [Option<f64>; 2] {
     let course_deg = course_deg.or(speed_kn.filter(|kn| *kn == 0.0));
     match speed_kn.zip(course_deg) {

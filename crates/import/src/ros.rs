@@ -1,7 +1,7 @@
 //! Messages of ROS 1 and ROS 2: which topics belong to which boat, and what they measure.
 //!
-//! ROS uses x east, y north, and angles anticlockwise from east (REP 103); along a boat, x is ahead
-//! and y to port.
+//! ROS uses x east, y north, and angles anticlockwise from east (REP 103); in a boat's own axes, x
+//! is ahead and y to port.
 
 use crate::{Found, Quantity};
 use primitives::LatLon;
@@ -34,7 +34,7 @@ enum Measured {
     Fix(LatLon),
     /// Height above the ellipsoid, m.
     Height(f64),
-    /// Position in the frame of the odometry, x, y and z, m.
+    /// Position in the coordinate frame of the odometry: x, y and z, m.
     Place([f64; 3]),
     /// Compass heading, degrees.
     Heading(f64),
@@ -58,7 +58,7 @@ pub(crate) struct Bag {
 pub(crate) enum Encoding {
     /// ROS 1: packed, little endian.
     Packed,
-    /// ROS 2: CDR, each number at a multiple of its size.
+    /// ROS 2: CDR, in which each number is aligned to its size.
     Cdr,
 }
 
@@ -75,7 +75,7 @@ impl Bag {
     ) {
         let (package, name) = message_type.split_once('/').unwrap_or_default();
         let name = name.strip_prefix("msg/").unwrap_or(name);
-        // Ordered velocities look like measured ones.
+        // Commanded velocities have the same type as measured ones.
         let is_command = topic.contains("cmd");
         let Some(mut fields) = Fields::new(bytes, encoding) else {
             self.unreadable += 1;
@@ -103,8 +103,8 @@ impl Bag {
         rows.extend(measured.into_iter().map(|measured| (at_s, measured)));
     }
 
-    /// Assigns the topics to boats: to `only` if given, else to the boat named in the first part of
-    /// the topic.
+    /// Assigns the topics to boats: to `only` if given, or else to the boat named in the first part
+    /// of the topic. If no boat is named, all topics belong to the boat `stem`.
     pub(crate) fn found(self, only: Option<&str>, stem: &str) -> Found {
         let mut found = Found::default();
         let is_place = |(_, measured): &(f64, Measured)| {
@@ -123,7 +123,7 @@ impl Bag {
             let boat = match (only, named, boats.len()) {
                 (Some(only), ..) => only.to_owned(),
                 (_, Some(named), _) if boats.contains(named) => name_of(named),
-                // One boat, with some topics outside its namespace.
+                // There is only one boat, so it owns the topics outside its namespace too.
                 (_, _, 1) => name_of(boats.first().copied().unwrap_or_default()),
                 (_, _, 0) => stem.to_owned(),
                 _ => {
@@ -137,18 +137,25 @@ impl Bag {
         found.has_utc = first_s.fold(f64::INFINITY, f64::min) > 1e8;
         if !ignored.is_empty() {
             let topics: Vec<&str> = ignored.into_iter().collect();
-            let note = format!("ignored topics of no boat: {}", topics.join(", "));
+            let note = format!(
+                "ignored topics that belong to no boat: {}",
+                topics.join(", ")
+            );
             found.notes.push(note);
         }
         if self.unreadable > 0 {
-            let note = format!("{} messages cannot be decoded", self.unreadable);
+            let note = format!(
+                "ignored {} messages that cannot be decoded",
+                self.unreadable
+            );
             found.notes.push(note);
         }
         found
     }
 }
 
-/// The part of a topic that may name a boat: the first of several.
+/// The first part of a topic, which may name a boat. `None` if it names a sensor or a node, or is
+/// the only part.
 fn namespace(topic: &str) -> Option<&str> {
     let (first, _) = topic.trim_start_matches('/').split_once('/')?;
     (!NOT_BOATS.contains(&first)).then_some(first)
@@ -166,8 +173,8 @@ fn add_topic(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured)
         };
         match *measured {
             Measured::Fix(at) => found.positions.push(boat, source, *at_s, at),
-            // Each boat's odometry has its own frame, so positions on the globe take precedence.
             Measured::Height(height) => push(Quantity::Height, source, height),
+            // Each boat's odometry has its own origin, so positions on the globe take precedence.
             Measured::Place([x, y, height]) => {
                 push(Quantity::X, 10, x);
                 push(Quantity::Y, 10, y);
@@ -202,7 +209,7 @@ fn add_thrust(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured
         .fold(0.0, |most, (_, number)| f64::max(most, number.abs()));
     if most > 100.0 {
         let note =
-            format!("{topic}: commands up to {most:.0}, expected -1 to 1 or per cent; ignored");
+            format!("{topic}: ignored commands up to {most:.0}; expected -1 to 1, or per cent");
         found.notes.push(note);
         return;
     }
@@ -216,7 +223,7 @@ fn add_thrust(found: &mut Found, boat: &str, topic: &str, rows: &[(f64, Measured
 /// The time in a message's header, s, and its measurements.
 type Read = Option<(Option<f64>, Vec<Measured>)>;
 
-/// Reads the fields of a message one after the other; `None` at its end.
+/// Reads the fields of a message in order. Its methods return `None` if the message is too short.
 struct Fields<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -315,7 +322,7 @@ impl<'a> Fields<'a> {
         let [lat_deg, lon_deg, height] = self.f64s()?;
         let at = LatLon { lat_deg, lon_deg };
         let measured = vec![Measured::Fix(at), Measured::Height(height)];
-        // -1: no fix.
+        // Status -1: no fix.
         let has_fix = status >= 0;
         Some((Some(stamp_s), if has_fix { measured } else { vec![] }))
     }
@@ -325,7 +332,7 @@ impl<'a> Fields<'a> {
         let orientation = self.f64s()?;
         let covariance = self.f64s::<9>()?;
         let [.., yaw_rate] = self.f64s::<3>()?;
-        // A first element of -1: the sensor does not measure the orientation.
+        // A covariance that begins with -1: the sensor does not measure the orientation.
         let heading = heading(orientation).filter(|_| covariance[0] != -1.0);
         let mut measured = vec![Measured::YawRate(-yaw_rate.to_degrees())];
         measured.extend(heading);
@@ -342,7 +349,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The heading of an orientation x, y, z, w; `None` if it has no length.
+/// The heading of an orientation x, y, z, w; `None` if this is not a unit quaternion.
 fn heading([x, y, z, w]: [f64; 4]) -> Option<Measured> {
     let yaw_rad = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
     let is_rotation = (x * x + y * y + z * z + w * w - 1.0).abs() < 0.1;

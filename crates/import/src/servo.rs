@@ -1,4 +1,5 @@
-//! Commanded thrust from the servo outputs of an ArduPilot boat, which are pulse widths in µs.
+//! Derives commanded thrust from the servo outputs of an ArduPilot boat, which are pulse widths in
+//! µs.
 
 use std::collections::BTreeMap;
 
@@ -18,9 +19,9 @@ impl Servos {
         }
     }
 
-    /// The remark for a boat with thrust but without these parameters.
+    /// The note for a boat with servo outputs but without these parameters.
     pub(crate) const UNKNOWN: &'static str =
-        "no SERVOn_FUNCTION; outputs 1 and 3 are taken for the left and the right thruster";
+        "no SERVOn_FUNCTION; outputs 1 and 3 are assumed to be the left and the right thruster";
 
     /// Whether the log contains the functions of the outputs.
     pub(crate) fn are_known(&self) -> bool {
@@ -28,8 +29,8 @@ impl Servos {
     }
 
     /// Commanded thrust of the left and the right thruster, per cent, from the outputs in order;
-    /// `None` if the boat does not steer by its thrust. Without parameters, the outputs are 1 and
-    /// 3, as by default in Rover.
+    /// `None` if the boat does not steer by its thrust. Without parameters, outputs 1 and 3 are
+    /// used, the defaults of Rover.
     pub(crate) fn thrusts_pct(&self, outputs: &[u16]) -> Option<[f64; 2]> {
         let output_of = |function, default| {
             if !self.are_known() {

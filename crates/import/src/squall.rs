@@ -1,4 +1,4 @@
-//! Squall's own recordings: of a game, or of the gateway of a real boat.
+//! Squall's own recordings of a game, or of the gateway of a real boat.
 
 use crate::mavlink_log::Vehicles;
 use crate::nmea::Sentences;
@@ -91,7 +91,7 @@ fn gateway(bag: &Bag) -> Found {
         .filter_map(|topic| topic.strip_prefix("link/"));
     for boat in links {
         let topic = format!("link/{boat}");
-        // One for each direction, because a message may be split between chunks.
+        // One parser for each direction, because a message may be split between chunks.
         let mut sentences = [Sentences::new(boat), Sentences::new(boat)];
         let mut framers = [
             gateway::mavlink::Framer::new(),

@@ -4,9 +4,9 @@ use crate::{Logs, Quantity};
 
 /// Maximum gap between two measurements across which a value is interpolated, s.
 const GAP_MAX_S: f64 = 2.0;
-/// Time after which a command that is not repeated is no longer known, s.
+/// Time after which the thrust counts as unknown if a command is not repeated, s.
 const COMMAND_MAX_S: f64 = 5.0;
-/// Time on either side over which a missing yaw rate is estimated from headings, s.
+/// A missing yaw rate is estimated from the headings this long before and after, s.
 const YAW_S: f64 = 0.5;
 
 /// The measured columns.
@@ -19,9 +19,9 @@ const MEASURED: [(&str, Quantity); 6] = [
     ("yaw_rate_deg_s", Quantity::YawRate),
 ];
 
-/// The log of a boat as CSV with the columns of `squall identify`, one row for each position. Other
-/// measurements are interpolated, and commands keep their last value. Columns without any value are
-/// omitted.
+/// The log of a boat as CSV with the columns of `squall identify`. It has one row for each
+/// position, except while the thrust is unknown. Other measurements are interpolated, and commands
+/// keep their last value. Columns without any value are omitted.
 pub fn table(logs: &Logs, boat: &str) -> String {
     let times = logs
         .series(boat, Quantity::X)
@@ -58,7 +58,7 @@ pub fn table(logs: &Logs, boat: &str) -> String {
                 (at_s - given_s <= COMMAND_MAX_S).then_some(value)
             })
             .collect();
-        // Skip a second position at the same moment, as from two sentences.
+        // Skip a second position with the same time, for example from another NMEA sentence.
         if *at_s - before_s < 1e-3 || commanded.iter().any(Option::is_none) {
             continue;
         }

@@ -1,6 +1,7 @@
 //! Logs written by other programs: the recorder of `rosbags`, the writer of `mcap` (Python),
-//! `pymavlink`, and the firmware ArduPilot Rover. All except the firmware's show one boat on a
-//! circle of 40 m at 2 m/s to starboard, from north, from 2026-05-01 12:00 UTC for 20 s.
+//! `pymavlink`, and the firmware ArduPilot Rover. In all except the firmware's, one boat turns to
+//! starboard on a circle with a radius of 40 m, at 2 m/s. It starts with a heading of north at
+//! 2026-05-01 12:00 UTC and drives for 20 s.
 
 use import::{Format, Imported, Input, Map, Quantity};
 use primitives::LatLon;
@@ -87,7 +88,8 @@ fn a_bag_of_ros_1_in_either_compression_is_read() {
     }
 }
 
-/// Checks what only the bags contain. Their y velocity is to port, and their yaw anticlockwise.
+/// Checks measurements that only the bags contain. In bags, y velocity is to port and yaw is
+/// anticlockwise.
 #[track_caller]
 fn assert_motion_and_thrust(imported: &Imported) {
     let at = |quantity| imported.logs.at("wamv", quantity, START_S + 7.0);
@@ -104,7 +106,7 @@ fn a_telemetry_log_is_read_with_the_functions_and_limits_of_its_servos() {
     assert_eq!(imported.formats, [Format::Tlog]);
     assert_circle(&imported, "boat_7", 0.02, 0.01);
     let at = |quantity| imported.logs.at("boat_7", quantity, START_S + 7.0);
-    // Output 3 is the left thruster, reversed, at half; output 1 the right one at a quarter.
+    // Output 3 is the left thruster, which is reversed, at 50 %; output 1 is the right one at 25 %.
     near(at(Quantity::Port), 50.0, 1e-9, "port");
     near(at(Quantity::Starboard), 25.0, 1e-9, "starboard");
     let named = import::read(&[input(log("circle.tlog"), Some("blue_one"))], None, None);
@@ -120,7 +122,7 @@ fn sentences_are_timed_by_their_receiver_or_by_themselves() {
     let at = |imported: &Imported, quantity| imported.logs.at("circle", quantity, START_S + 7.0);
     near(at(&imported, Quantity::Port), 50.0, 1e-9, "port");
     near(at(&imported, Quantity::Starboard), 30.0, 1e-9, "starboard");
-    // Four sentences a second, received with a delay of 0.25 s, in three styles.
+    // Four sentences a second, received with a delay of 0.25 s, with the time in three formats.
     let received = |stamp: fn(usize) -> String| {
         let lines = text.lines().enumerate();
         lines
@@ -139,7 +141,7 @@ fn sentences_are_timed_by_their_receiver_or_by_themselves() {
             .expect("a track")[0];
         assert_eq!(first.0, START_S + 0.25, "{}", &received[..40]);
     }
-    // Over midnight, and with a sentence whose checksum is wrong.
+    // A log across midnight that includes a sentence with a wrong checksum.
     let night = "$GPGGA,235959.00,4221.5,N,07105.2,W,4,12,0.7,1.0,M,-33.0,M,,*53\n\
                  $GPGGA,000001.00,4221.5,N,07105.2,W,4,12,0.7,1.0,M,-33.0,M,,*53\n\
                  $GPGGA,000002.00,4221.5,N,07105.2,W,4,12,0.7,1.0,M,-33.0,M,,*50\n\
@@ -154,7 +156,7 @@ fn sentences_are_timed_by_their_receiver_or_by_themselves() {
     );
 }
 
-/// Expects the last message of each kind, as pymavlink's `DFReader` reads it.
+/// Expects the last message of each kind to have the values that pymavlink's `DFReader` reads.
 #[test]
 fn a_log_of_the_real_firmware_is_read() {
     let imported = read("rover.bin");
@@ -189,7 +191,7 @@ fn a_log_of_the_real_firmware_is_read() {
     );
     near_at(Quantity::Port, 1_795_826_112.760_2, 19.0, "port");
     near_at(Quantity::Starboard, 1_795_826_112.760_2, 55.6, "starboard");
-    // The filter's own position: north and east of its origin.
+    // The position estimated by the filter, north and east of its origin.
     let datum = logs.datum.expect("a datum");
     let moved = [Quantity::X, Quantity::Y].map(last);
     let metres_per_deg = 111_073.0;
@@ -227,7 +229,7 @@ fn errors_name_file_place_and_what_is_possible() {
         (
             "a,b\n1,2\n",
             None,
-            ":1: no column of times; name one with --map t=COLUMN; columns found: a, b",
+            ":1: no time column; name one with --map t=COLUMN; columns found: a, b",
         ),
         (
             "t,x,y\nnoon,1,2\n",
@@ -240,7 +242,7 @@ fn errors_name_file_place_and_what_is_possible() {
             Some("speed=SOG"),
             ":1: no column \"SOG\" for speed; columns found: t, x, y",
         ),
-        ("t,heading\n1,2\n", None, "no position of a boat found"),
+        ("t,heading\n1,2\n", None, "no boat positions found"),
         ("", None, "the file is empty"),
         ("SQLite format 3\0", None, "rosbags-convert"),
     ] {
@@ -282,7 +284,7 @@ fn logs_of_several_boats_become_one_game_that_can_be_read_again() {
     );
     let frame = recording.frames().nth(70).expect("20 s").expect("sound");
     for boat in &frame.vehicles {
-        // 49.4 m east of the datum, 7 s on the circle.
+        // The circle starts 49.45 m east of the datum. After 7 s, the boat is 2.43 m further east.
         near(Some(boat.nav.east_m), 49.45 + 2.43, 0.1, "east");
         near(Some(boat.nav.surge_m_s), 2.0, 0.01, "surge");
     }

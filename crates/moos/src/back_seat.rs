@@ -6,7 +6,7 @@ use messages::refusal::{Refusal, Refusals};
 use primitives::SimTime;
 use primitives::angle::rad_from_compass_deg;
 
-/// The variables that a back seat writes.
+/// The variables with which MOOS applications control their boat.
 pub(crate) const READS: [&str; 10] = [
     "DESIRED_HEADING",
     "DESIRED_SPEED",
@@ -42,7 +42,7 @@ struct Desired {
 /// The newest requests of the applications of one boat.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BackSeat {
-    /// The requests, in the order of [`READS`].
+    /// The newest requests in the first six variables of [`READS`], in that order.
     desired: [Option<Desired>; 6],
     /// `DEPLOY` is false: the boat must not move.
     is_undeployed: bool,
@@ -55,7 +55,7 @@ pub(crate) struct BackSeat {
 }
 
 impl BackSeat {
-    /// Receives a value. Returns whether it was one of [`READS`].
+    /// Receives a value. Returns whether its variable is one of [`READS`].
     pub(crate) fn receive(&mut self, msg: &Msg, now: SimTime) -> bool {
         let Some(place) = READS.iter().position(|name| *name == msg.key) else {
             return false;
@@ -87,8 +87,8 @@ impl BackSeat {
         }
     }
 
-    /// The current order: thrust and rudder take precedence over heading and speed, because a
-    /// controller that converts the latter to the former runs after the helm. Without a complete
+    /// The current order: thrust and rudder take precedence over heading and speed, because they
+    /// are the output of a controller that follows the helm's heading and speed. Without a complete
     /// pair of requests younger than `ttl_s`, the boat holds.
     pub(crate) fn order(&mut self, now: SimTime, ttl_s: f64) -> Order {
         if self.is_undeployed || self.is_overridden || self.all_stop.is_some() {
@@ -121,7 +121,7 @@ impl BackSeat {
         })
     }
 
-    /// The mode for the boat's node report: why the boat holds although it has requests, or
+    /// The mode in the boat's node report: why the boat must hold whatever is requested, or
     /// `DRIVE`.
     pub(crate) fn mode(&self) -> &str {
         match self {

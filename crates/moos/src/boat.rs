@@ -1,5 +1,5 @@
-//! A boat as a MOOS community: its mind publishes each picture as variables, and gives the orders
-//! that the community's applications request.
+//! A boat as a MOOS community: its mind publishes each picture as variables, and orders what the
+//! community's applications request.
 
 use crate::back_seat::{self, BackSeat};
 use crate::clock::MoosClock;
@@ -32,7 +32,7 @@ pub fn reads() -> BTreeSet<String> {
 
 /// Maximum number of drawings waiting for the shoreside.
 const DRAWINGS_MAX: usize = 256;
-/// Silence (s) after which a helm counts as restarted.
+/// Silence (s) after which a helm that reports again counts as restarted.
 const HELM_SILENCE_S: f64 = 3.0;
 
 /// The initial values of a community, so that no operator must press a button to begin a game.
@@ -44,8 +44,8 @@ const START: [(&str, bool); 5] = [
     ("MOOS_MANUAL_OVERIDE", false),
 ];
 
-/// The mind of a boat whose decisions are made by MOOS applications. It depends on their clocks, so
-/// it is only for games paced by a clock.
+/// The mind of a boat that MOOS applications control. The applications follow a clock, so the game
+/// must be paced by a clock too.
 pub struct BoatMind {
     scenario: Arc<Scenario>,
     frame: LocalFrame,
@@ -59,7 +59,7 @@ pub struct BoatMind {
     has_begun: bool,
     /// When the helm last reported its state.
     helm_at: Option<SimTime>,
-    /// Whether the boat was at its own flag at the last picture.
+    /// Whether the boat was at its own flag in the last picture.
     was_home: bool,
 }
 
@@ -138,7 +138,7 @@ impl BoatMind {
             ("NAV_LAT", at.lat_deg),
             ("NAV_LONG", at.lon_deg),
             ("NAV_HEADING", heading_deg),
-            // Counter-clockwise, rad, as published by MOOS simulators.
+            // Anticlockwise, rad, as published by MOOS simulators.
             ("NAV_YAW", -nav.psi_rad),
             ("NAV_SPEED", nav.speed_m_s()),
             ("NAV_HEADING_OVER_GROUND", compass_deg_from_rad(course_rad)),
@@ -160,7 +160,7 @@ impl BoatMind {
         );
     }
 
-    /// Reports the teammates, and each new sighting of other boats with its time.
+    /// Reports the teammates, and each new sighting of another boat with the time of the sighting.
     fn publish_others(&mut self, community: &mut Community, picture: &Picture) {
         let now_s = self.moos.now_s();
         for mate in picture
@@ -216,7 +216,8 @@ impl BoatMind {
             .own_flags(team)
             .any(|(_, home)| home.distance(at) < scenario.rules.untag_radius_m);
         if is_home && !std::mem::replace(&mut self.was_home, is_home) {
-            // Missions set `TAGGED` themselves to send a boat home; this makes it true again.
+            // Missions set `TAGGED` themselves to send a boat home; publishing it again corrects
+            // the value.
             ["TAGGED", "HAS_FLAG"]
                 .iter()
                 .for_each(|key| community.forget(key));
@@ -308,7 +309,7 @@ mod tests {
 
     const MOOS: MoosClock = MoosClock { warp: 1.0 };
 
-    /// A picture of the first boat, which is tagged, and an opponent in its zone, sighted half a
+    /// A picture in which the first boat is tagged and has sighted an opponent in its zone half a
     /// second earlier.
     fn picture(scenario: &Scenario, s: f64) -> Picture {
         let stamp = Stamp {

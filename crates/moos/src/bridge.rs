@@ -1,5 +1,5 @@
-//! The bridge: finds a game, opens the communities, joins with the boats, and serves them until the
-//! game is over.
+//! The bridge: finds a game, opens the communities, joins the game with their boats, and serves the
+//! communities until the game is over.
 
 use crate::boat::{self, BoatMind};
 use crate::clock::MoosClock;
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use thiserror::Error;
 
-/// Interval of notes about dropped messages.
+/// Minimum interval between notes about dropped messages.
 const REPORT: Duration = Duration::from_secs(1);
 /// Maximum time to wait for a boat's helm once any application has connected.
 const HELM_MAX: Duration = Duration::from_secs(5);
@@ -31,7 +31,7 @@ const LINGER: Duration = Duration::from_millis(500);
 pub struct Settings {
     /// The game to join. `None`: the only one available.
     pub game: Option<GameName>,
-    /// The address of the sim.
+    /// The location of the sim.
     pub place: Place,
     /// Maximum time to search for the sim and to wait for free boats.
     pub wait: Duration,
@@ -39,24 +39,24 @@ pub struct Settings {
     pub silence: Duration,
     /// Set by the caller to leave the game.
     pub stop: Arc<AtomicBool>,
-    /// Boats by name, with the addresses of their databases; without an address, the next port is
-    /// used.
+    /// Boats by name, with the addresses of their databases. A boat without an address gets the
+    /// next port.
     pub boats: Vec<(String, Option<Address>)>,
-    /// The team whose boats are all to be connected.
+    /// A team whose boats are all connected.
     pub team: Option<String>,
     /// The first port of boats without an address.
     pub first_port: u16,
-    /// The shoreside's database.
+    /// The address of the shoreside's database; `None` for no shoreside.
     pub shore: Option<Address>,
     /// Addresses of pShare instances that receive the shoreside's publications.
     pub share_to: Vec<SocketAddr>,
-    /// The address at which commands from pShare arrive.
+    /// The local address that receives commands from pShare.
     pub share_listen: Option<SocketAddr>,
 }
 
 /// Reports of the bridge.
 pub enum News<'a> {
-    /// No game found yet, or a boat is not free.
+    /// No game has been found yet, or a boat is not free.
     Looking(&'a str),
     /// The communities are open.
     Open(Vec<String>),
@@ -69,7 +69,7 @@ pub enum News<'a> {
 /// Why the bridge has ended.
 #[derive(Debug, Error)]
 pub enum BridgeError {
-    /// There is no game.
+    /// No game was found.
     #[error(transparent)]
     NotFound(#[from] NotFound),
     /// The game or the arguments do not allow a bridge.
@@ -197,8 +197,8 @@ impl Bridge<'_> {
         played
     }
 
-    /// Waits until every boat has a helm, or at least some application, because a game begins once
-    /// its last agent has joined.
+    /// Waits until every boat has a helm or, after [`HELM_MAX`], any application, because a game
+    /// begins once its last agent has joined.
     fn await_helms(&self) -> Result<(), BridgeError> {
         let patience = Patience::of_player(self.settings.silence);
         let sim = SimWatch::open(&self.bus, &self.game, patience)?;
@@ -229,7 +229,7 @@ impl Bridge<'_> {
         }
     }
 
-    /// Plays with the boats until the game is over.
+    /// Controls the boats until the game is over.
     fn play(&self) -> Result<(), BridgeError> {
         let name = |community: &Arc<Watched<Community>>| {
             community.visit(|community| community.name.clone())
@@ -309,7 +309,8 @@ impl Bridge<'_> {
         }))
     }
 
-    /// Reports drops, at most once a second, and a pace that MOOS does not follow.
+    /// Reports dropped messages, at most once a second, and changes of pace, which MOOS does not
+    /// follow.
     fn report(&self, speed: &Watched<Option<f64>>, is_ended: &dyn Fn() -> bool) {
         let mut last = vec![String::new(); self.boats.len() + 1];
         let mut told_speed = self.moos.warp;
@@ -392,7 +393,7 @@ fn boats(settings: &Settings, scenario: &Scenario) -> Result<Vec<(String, Addres
         let next = || Some(Address::Serve((Ipv4Addr::LOCALHOST, ports.next()?).into()));
         let address = address
             .or_else(next)
-            .ok_or("there are not enough ports above --port")?;
+            .ok_or("not enough ports from --port up to 65535 for all boats")?;
         Ok((name, address))
     });
     addressed.collect()

@@ -20,7 +20,7 @@ impl MoosClock {
     pub fn of_pace(pace: &str) -> Result<MoosClock, String> {
         let warp = match pace {
             "lockstep" => {
-                return Err("the game runs in lockstep, where every decision waits for every boat; MOOS applications \
+                return Err("the game runs in lockstep, so every decision waits for every boat; MOOS applications \
                             follow the clock instead: start the game with --pace realtime or a factor such as --pace 4x"
                     .to_owned());
             }

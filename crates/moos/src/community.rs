@@ -1,5 +1,5 @@
-//! A MOOS community from the bridge's point of view: where it publishes, and which variables it
-//! reads.
+//! A MOOS community from the bridge's point of view: the database in which the bridge publishes and
+//! reads variables.
 
 use crate::back_seat::HELM;
 use crate::clock::MoosClock;
@@ -28,7 +28,7 @@ impl FromStr for Address {
     fn from_str(text: &str) -> Result<Address, String> {
         let wrong = || {
             format!(
-                "the address is {text:?}, expected :PORT or IP:PORT to serve a MOOSDB, or tcp/HOST:PORT to use one"
+                "the address is {text:?}, expected :PORT or IP:PORT to serve a MOOSDB, or tcp/HOST:PORT to connect to one"
             )
         };
         if let Some(place) = text.strip_prefix("tcp/") {
@@ -69,11 +69,11 @@ pub struct Community {
     published: BTreeMap<String, Value>,
     /// Notes for the person who runs the bridge.
     notes: Vec<String>,
-    /// Drawings of the applications for the shoreside.
+    /// Drawings by the applications, waiting for the shoreside.
     pub(crate) drawings: Vec<Msg>,
     /// Number of malformed datagrams.
     pub(crate) malformed: u64,
-    /// Values of applications that the bridge could not use.
+    /// Counts of values from applications that the bridge could not use.
     pub refusals: Refusals,
 }
 
@@ -90,7 +90,7 @@ impl Community {
     /// Opens the database, or the connection to it.
     ///
     /// # Errors
-    /// If the address is invalid.
+    /// If the address cannot be served, or a thread cannot be started.
     pub fn open(
         name: &str,
         address: &Address,
@@ -150,8 +150,8 @@ impl Community {
         msg
     }
 
-    /// Publishes a value if it differs from the last one published by this function. Returns the
-    /// message if it was published.
+    /// Publishes a value if it differs from the last value of the variable that this function
+    /// published. Returns the message if it was published.
     pub fn publish_change(&mut self, key: &str, value: Value) -> Option<Msg> {
         if self.published.get(key) == Some(&value) {
             return None;
@@ -166,7 +166,8 @@ impl Community {
         self.published.insert(key.to_owned(), value.clone()) != Some(value)
     }
 
-    /// Publishes a person's command from the shoreside, for both applications and the bridge.
+    /// Publishes a person's command from the shoreside, so that both the applications and the
+    /// bridge receive it.
     pub(crate) fn command(&mut self, msg: Msg) {
         let msg = Msg {
             kind: Kind::NOTIFY,
@@ -236,7 +237,7 @@ impl Community {
         std::mem::take(&mut self.notes)
     }
 
-    /// Counts of drops so far.
+    /// The messages and connections dropped so far.
     pub fn dropped(&self) -> Dropped {
         let dropped = match &self.link {
             Link::Served(server) => server.visit(|database, _| database.dropped),

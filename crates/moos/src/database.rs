@@ -1,9 +1,9 @@
-//! The state of a MOOSDB: variables, clients, subscriptions and their mail, without sockets or
-//! clock.
+//! The state of a MOOSDB: variables, and clients with their subscriptions and mail. It has no
+//! sockets and no clock.
 //!
-//! Like MOOSDB, it fixes a variable's type with the first value, delivers the last value on
-//! registration, and refuses a second client of the same name. Unlike in MOOSDB, everything that
-//! clients can fill has a limit, and all drops are counted.
+//! Like MOOSDB, it fixes a variable's type when the first value arrives, delivers the last value on
+//! registration, and refuses a second client with the same name. Unlike MOOSDB, it limits
+//! everything that clients can fill, and counts what it drops.
 
 use crate::mail::Mail;
 use crate::pattern::{matches, patterns};
@@ -18,21 +18,22 @@ pub const CLIENTS_MAX: usize = 64;
 const NAME_MAX: usize = 128;
 /// Maximum number of variables.
 const VARIABLES_MAX: usize = 8192;
-/// Maximum number of subscriptions of a client, for each kind.
+/// Maximum number of subscriptions to single variables per client. For patterns, the maximum is
+/// 1/64 of this.
 const SUBSCRIPTIONS_MAX: usize = 8192;
-/// Maximum length of all values, bytes.
+/// Maximum total length of all values, bytes.
 const STORED_MAX: usize = 64 << 20;
 /// The name under which the database and the bridge publish.
 pub const BRIDGE: &str = "squall";
-/// Interval of the database's own variables, s.
+/// Interval at which the database publishes its own variables, s.
 const STATUS_S: f64 = 1.0;
-/// Clock difference (s) above which a client is reported.
+/// Clock difference (s) above which a client's clock is reported.
 const SKEW_MAX_S: f64 = 60.0;
 
-/// Counts of drops, by reason.
+/// Counts of dropped messages and connections, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
-    /// Values that are not of the variable's type.
+    /// Values that do not have the variable's type.
     pub wrong_type: u64,
     /// Values, variables or subscriptions beyond a limit.
     pub over_limit: u64,
@@ -110,7 +111,7 @@ pub struct Database {
     variables: BTreeMap<String, Msg>,
     stored: usize,
     clients: Vec<Client>,
-    /// The newest value of each variable that the bridge reads, if it has changed.
+    /// The newest value of each variable that the bridge reads, until the bridge has read it.
     heard: BTreeMap<String, Msg>,
     reads: BTreeSet<String>,
     /// Notes for the person who runs the bridge.
@@ -119,7 +120,7 @@ pub struct Database {
     skewed: BTreeSet<String>,
     opened_s: f64,
     status_s: f64,
-    /// Counts of drops so far.
+    /// The messages and connections dropped so far.
     pub dropped: Dropped,
 }
 
@@ -141,7 +142,8 @@ impl Database {
         }
     }
 
-    /// Admits a client with the handshake `hello`, and returns the welcome and its mailbox.
+    /// Admits a client with the handshake `hello`, and returns the welcome message and the client's
+    /// mailbox.
     ///
     /// # Errors
     /// The reason for a refusal.
@@ -163,7 +165,7 @@ impl Database {
             self.dropped.refused += 1;
             return Err(reason);
         }
-        // An upper bound on the clock difference, since it includes the packet's transit time.
+        // This includes the packet's transit time.
         let skew_s = if hello.time_s.is_finite() {
             now_s - hello.time_s
         } else {
@@ -173,7 +175,7 @@ impl Database {
         if is_other && self.skewed.len() < CLIENTS_MAX && self.skewed.insert(name.to_owned()) {
             let community = &self.community;
             self.notes.push(format!(
-                "{community}: the MOOS time of {name:?} differs by {:.0} s: does its mission have this MOOSTimeWarp?",
+                "{community}: the MOOS time of {name:?} differs by {:.0} s from the game's; compare MOOSTimeWarp in its mission file",
                 skew_s.abs()
             ));
         }
@@ -211,8 +213,8 @@ impl Database {
         }
     }
 
-    /// Processes a client's packet. Returns the answer to its clock comparison, if it contained
-    /// one.
+    /// Processes a client's packet. Returns the answer to its clock comparison, if the packet
+    /// contained one.
     pub fn receive(&mut self, name: &str, messages: Vec<Msg>, now_s: f64) -> Option<Msg> {
         let mut timing = None;
         for msg in messages {
@@ -413,7 +415,7 @@ impl Database {
         known.iter().for_each(|value| self.deliver(name, value));
     }
 
-    /// Answers a request to the database: `ALL` values, or the `VAR_SUMMARY` of names.
+    /// Answers a request to the database: `ALL` for the values, `VAR_SUMMARY` for the names.
     fn answer(&mut self, name: &str, msg: &Msg, now_s: f64) {
         let names = || {
             self.variables
@@ -445,7 +447,7 @@ impl Database {
 }
 
 impl Client {
-    /// The subscription by pattern through which this client receives a variable.
+    /// The subscription by pattern through which this client receives the variable of `msg`.
     fn matching(&mut self, msg: &Msg) -> Option<&mut Subscription> {
         if self.wildcards.is_empty() {
             return None;

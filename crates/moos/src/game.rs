@@ -1,4 +1,5 @@
-//! Game variables that both a boat's community and the shoreside publish: flags, zones, scores.
+//! Game variables that both the boats' communities and the shoreside publish: flags, zones and
+//! scores.
 
 use crate::community::{Community, Value};
 use analysis::alog;
@@ -8,10 +9,11 @@ use primitives::math::decimal;
 use primitives::{Ned, TeamId, VehicleId};
 use scenario::Scenario;
 
-/// Colours known to the drawing programs; teams with other names are drawn in the last one.
+/// Colours that viewers know. A team with the name of a colour is drawn in that colour; all others
+/// are drawn in white.
 const COLOURS: [&str; 6] = ["red", "blue", "green", "orange", "yellow", "white"];
 
-/// A node report, with latitude and longitude.
+/// A node report, with latitude, longitude and colour.
 pub(crate) fn node_report(
     scenario: &Scenario,
     frame: &LocalFrame,
@@ -28,7 +30,7 @@ pub(crate) fn node_report(
     ))
 }
 
-/// `true` or `false`, in the form that missions compare.
+/// `true` or `false` as text, because missions compare text.
 pub(crate) fn flag_of(is_so: bool) -> Value {
     Value::Text(is_so.to_string())
 }
@@ -41,7 +43,7 @@ pub(crate) fn colour(scenario: &Scenario, team: TeamId) -> &str {
         .map_or("white", |_| name)
 }
 
-/// A flag as a marker: at its position, or with its carrier.
+/// The marker of flag number `i` at this position.
 pub(crate) fn marker(scenario: &Scenario, i: usize, at: Ned) -> String {
     let team = scenario.field.flags[i].team;
     format!(
@@ -54,7 +56,7 @@ pub(crate) fn marker(scenario: &Scenario, i: usize, at: Ned) -> String {
     )
 }
 
-/// The label of a flag: the name of its team, with a number for further flags of a team.
+/// The label of a flag: the name of its team, plus a number for the team's second and later flags.
 pub(crate) fn flag_label(scenario: &Scenario, i: usize) -> String {
     let flags = &scenario.field.flags;
     let team = &scenario.teams[flags[i].team.index()].name;
@@ -68,7 +70,8 @@ pub(crate) fn flag_label(scenario: &Scenario, i: usize) -> String {
     }
 }
 
-/// Publishes changes of scores, tagged boats and flags. `tagged` are the boats known to be tagged.
+/// Publishes changes in scores, tagged boats and flags. `tagged` lists the boats known to be
+/// tagged.
 pub(crate) fn publish(
     community: &mut Community,
     scenario: &Scenario,
@@ -126,7 +129,7 @@ pub(crate) fn zone(scenario: &Scenario, team: TeamId) -> String {
     )
 }
 
-/// The corners of a polygon.
+/// The corners of a polygon in the syntax of MOOS.
 pub(crate) fn points(corners: &[Ned]) -> String {
     let point = |at: &Ned| format!("{},{}", decimal(at.east, 2), decimal(at.north, 2));
     format!(

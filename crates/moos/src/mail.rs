@@ -1,10 +1,10 @@
-//! Unread mail of a client.
+//! The unread mail of a client.
 
 use crate::wire::{self, Msg};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Maximum length of unread mail of a client, bytes.
+/// Maximum total length of a client's unread mail, bytes.
 pub(crate) const MAIL_MAX: usize = 8 << 20;
 
 /// Unread mail of a client: encoded messages, shared by all recipients.
@@ -20,7 +20,7 @@ pub struct Mail {
 }
 
 impl Mail {
-    /// Adds a message; returns how many old ones were dropped for it.
+    /// Adds a message. Returns the number of old messages dropped to make room for it.
     pub(crate) fn push(&mut self, message: &Arc<[u8]>) -> u64 {
         self.bytes += message.len();
         self.messages.push_back(Arc::clone(message));
@@ -39,7 +39,8 @@ impl Mail {
         displaced
     }
 
-    /// Unread mail as one packet that begins with `first`; `None` without any message.
+    /// Takes as much unread mail as fits in one packet, which begins with `first`. `None` if the
+    /// packet would be empty.
     pub fn take_packet(&mut self, first: Option<&Msg>) -> Option<Vec<u8>> {
         let mut encoded = Vec::new();
         first

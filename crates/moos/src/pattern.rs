@@ -2,8 +2,8 @@
 
 use crate::wire::Msg;
 
-/// The patterns of a subscription for sources and variables, and its interval, as written by MOOS
-/// clients (with commas) and `pymoos2` (with blanks).
+/// The patterns of a subscription for sources and variables, and its interval. MOOS clients
+/// separate them with commas, `pymoos2` with blanks.
 pub(crate) fn patterns(msg: &Msg) -> [String; 3] {
     let text = msg.as_text().unwrap_or_default();
     let value = |name: &str| {

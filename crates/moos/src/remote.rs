@@ -17,15 +17,15 @@ use std::time::Duration;
 const NAME: &str = "squall_bridge";
 /// Maximum time to connect, and to write.
 const CONNECT_MAX: Duration = Duration::from_secs(2);
-/// Pause between two attempts.
+/// Pause between two attempts to connect, and maximum time to wait for bytes.
 const RETRY: Duration = Duration::from_millis(500);
 /// Interval of clock comparisons, which also keep the connection alive.
 const TIMING: Duration = Duration::from_secs(1);
 
-/// The state that the threads share with the bridge.
+/// The state that the connection's threads share with the bridge.
 #[derive(Default)]
 struct State {
-    /// The newest value of each variable, if it has changed.
+    /// The newest value of each variable, until the bridge has read it.
     heard: BTreeMap<String, Msg>,
     notes: Vec<String>,
     is_connected: bool,
@@ -66,7 +66,8 @@ impl Remote {
         Ok(remote)
     }
 
-    /// Queues a message; without a connection it is dropped, because the next one replaces it.
+    /// Queues a message. Without a connection, the message is dropped, because newer values will
+    /// replace it.
     pub(crate) fn publish(&self, msg: &Msg) {
         if self.state.visit(|state| state.is_connected) {
             let mut encoded = Vec::new();
@@ -95,7 +96,8 @@ impl Remote {
         })
     }
 
-    /// Whether one of these variables was received, and whether the database is connected.
+    /// Whether a value of one of these variables is waiting for the bridge, and whether the
+    /// database is connected.
     pub(crate) fn presence(&self, names: &[&str]) -> (bool, bool) {
         self.state.visit(|state| {
             let has = |name: &&str| state.heard.contains_key(*name);
@@ -103,7 +105,7 @@ impl Remote {
         })
     }
 
-    /// Counts of drops so far.
+    /// The messages and connections dropped so far.
     pub(crate) fn dropped(&self) -> Dropped {
         self.state.visit(|state| state.dropped)
     }
@@ -152,10 +154,10 @@ impl Link {
         }
     }
 
-    /// A connection whose handshake has succeeded.
+    /// Connects and sends the handshake.
     fn connect(&self) -> Result<TcpStream, String> {
         let mut addresses = self.address.to_socket_addrs().map_err(|e| e.to_string())?;
-        let address = addresses.next().ok_or("the name has no address")?;
+        let address = addresses.next().ok_or("the host name has no address")?;
         let stream =
             TcpStream::connect_timeout(&address, CONNECT_MAX).map_err(|e| e.to_string())?;
         let set_up = stream
@@ -170,7 +172,8 @@ impl Link {
         Ok(stream)
     }
 
-    /// Reads until the connection ends.
+    /// Completes the handshake, subscribes, and reads until the connection ends. Returns why it
+    /// ended.
     fn converse(&self, stream: &TcpStream) -> Result<(), String> {
         let mut packets = Packets::new(stream, &self.is_closed);
         let answer = packets
@@ -282,7 +285,7 @@ mod tests {
         .unwrap()
     }
 
-    /// The keys received by the client and the server, once each has one.
+    /// The keys received by the client and the server, once each has received one.
     fn exchange(remote: &Remote, server: &Server) -> [String; 2] {
         let mut heard = [String::new(), String::new()];
         let start = clock::now();

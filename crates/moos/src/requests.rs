@@ -1,6 +1,6 @@
-//! Answers to requests for tags and grabs. The referee alone decides; it judges by positions and
-//! needs no request. The reply to a request states the referee's decision, or why the request could
-//! not be granted.
+//! Answers to requests for tags and grabs. Only the referee decides; it judges by positions and
+//! needs no request. The answer to a request states the referee's decision, or why the rules do not
+//! allow the request.
 
 use crate::community::Value;
 use messages::Picture;
@@ -25,7 +25,8 @@ pub(crate) struct Requests {
 pub(crate) type Answer = (String, Value);
 
 impl Requests {
-    /// Answers a request, unless the referee may still decide in its favour.
+    /// Answers a request at once if the rules do not allow it. Otherwise returns `None`, and
+    /// [`Requests::judge`] answers later.
     pub(crate) fn receive(
         &mut self,
         scenario: &Scenario,
@@ -78,8 +79,8 @@ impl Requests {
         }
     }
 
-    /// The replies after a picture: the referee's decisions, requested or not, and requests that
-    /// were not granted in time.
+    /// The answers after a picture: the referee's decisions, requested or not, and rejections of
+    /// requests that were not granted in time.
     pub(crate) fn judge(
         &mut self,
         scenario: &Scenario,

@@ -1,8 +1,8 @@
 //! A MOOSDB on a TCP port: threads and sockets around a [`Database`].
 //!
-//! Each client has a thread that reads and, unless it is synchronous, one that writes. The database
-//! is never locked while waiting for a client: a client that does not read loses its mail, then its
-//! connection.
+//! Each client has a thread that reads and, unless the client is synchronous, one that writes. No
+//! thread locks the database while it waits for a client: a client that does not read loses its
+//! mail, then its connection.
 
 use crate::clock::MoosClock;
 use crate::database::{CLIENTS_MAX, Database};
@@ -47,10 +47,10 @@ impl Drop for Connection {
 }
 
 impl Server {
-    /// Listens at this address.
+    /// Starts to listen on this address.
     ///
     /// # Errors
-    /// If the port is in use or the system refuses.
+    /// If the port is in use, or the system refuses the socket or the thread.
     pub(crate) fn open(
         address: SocketAddr,
         database: Database,
@@ -97,7 +97,7 @@ fn accept(listener: &TcpListener, shared: &Shared, is_closed: &Arc<AtomicBool>) 
             return;
         }
         let Ok(stream) = stream else {
-            // For example, too many open files: pause instead of busy-looping.
+            // For example, too many files are open: pause instead of retrying at once.
             clock::rest(LOOK_AGAIN);
             continue;
         };
@@ -180,7 +180,7 @@ fn read(
             }
             continue;
         }
-        // A synchronous client waits for exactly one packet, which begins with the time.
+        // A synchronous client waits for exactly one packet, which must begin with the time.
         let null = Msg::number(Kind::NULL, "", moos.now_s(), now_s);
         let answer = mail.visit(|mail| mail.take_packet(Some(&null)));
         if (&mut &*packets.stream)
@@ -229,9 +229,9 @@ fn start_writer(
 /// Why a connection has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The peer has left, or this side closes the connection.
+    /// The peer has left, or this side is closing the connection.
     Closed,
-    /// The peer was silent.
+    /// The peer was silent, or did not read.
     Stalled,
     /// The peer sent bytes that do not form a packet.
     Malformed,
@@ -256,7 +256,7 @@ impl<'a> Packets<'a> {
         }
     }
 
-    /// The name in a client's handshake; `None` if it is not a MOOS client.
+    /// The handshake message of a client; `None` if the peer is not a MOOS client.
     fn greeting(&mut self) -> Option<Msg> {
         let mut greeting = [0; wire::GREETING.len()];
         let mut length = 0;

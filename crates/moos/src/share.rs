@@ -1,4 +1,4 @@
-//! Datagrams of pShare: one message each, without acknowledgement.
+//! pShare datagrams: each carries one message, without acknowledgement.
 
 use crate::wire::{self, Msg};
 use std::io;
@@ -6,14 +6,14 @@ use std::net::{SocketAddr, UdpSocket};
 
 /// Maximum length of a pShare datagram, bytes.
 const DATAGRAM_MAX: usize = 48 << 10;
-/// Maximum number of datagrams per read.
+/// Maximum number of datagrams per call of [`Share::receive`].
 const READ_MAX: usize = 256;
 
 /// A socket that sends to and receives from instances of pShare.
 pub struct Share {
     socket: UdpSocket,
     to: Vec<SocketAddr>,
-    /// Datagrams that could not be decoded.
+    /// Number of datagrams that could not be decoded.
     pub malformed: u64,
 }
 
@@ -40,7 +40,8 @@ impl Share {
         self.socket.local_addr()
     }
 
-    /// Sends a message. If the network does not accept it at once, it is lost, like any datagram.
+    /// Sends a message unless it is too long. If the network does not accept it at once, it is
+    /// lost.
     pub fn send(&self, msg: &Msg) {
         let mut datagram = Vec::new();
         wire::encode(msg, &mut datagram);

@@ -1,5 +1,5 @@
-//! The shoreside as a MOOS community: publishes variables for pMarineViewer, from the frames for
-//! observers.
+//! The shoreside as a MOOS community: publishes the frames for observers as variables for
+//! pMarineViewer.
 
 use crate::boat::mode_of;
 use crate::clock::MoosClock;
@@ -18,7 +18,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Interval at which drawings are published again, for viewers that connect late.
+/// Interval (s, wall-clock time) at which drawings are published again, for viewers that connect
+/// late.
 const REDRAW_S: f64 = 5.0;
 /// Interval at which the shoreside reads commands while no frame arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
@@ -62,7 +63,7 @@ pub(crate) fn reads(scenario: &Scenario) -> BTreeSet<String> {
 }
 
 impl Shoreside<'_> {
-    /// Publishes frames until the game is over or the sim is lost.
+    /// Publishes frames until the game is over, the sim is lost, or `is_stopped` returns true.
     pub(crate) fn serve(
         &mut self,
         bus: &Bus,
@@ -164,7 +165,7 @@ impl Shoreside<'_> {
                 carrier.map_or(flag.home, |boat| astern(&boat.nav)),
             );
             let key = format!("VIEW_MARKER {i}");
-            // One variable contains the drawings of all flags; each flag is checked for changes
+            // One variable carries the markers of all flags, so each flag is checked for changes
             // separately.
             if community.is_change(&key, &marker) {
                 sent.push(community.publish("VIEW_MARKER", Value::Text(marker)));
@@ -203,7 +204,7 @@ impl Shoreside<'_> {
             .collect()
     }
 
-    /// Passes on drawings of this bridge's helms, for example their next waypoints.
+    /// Passes on the drawings of helms connected to this bridge, for example their next waypoints.
     fn pass_drawings(&self, community: &mut Community) {
         for boat in &self.boats {
             for msg in boat.visit(|boat| std::mem::take(&mut boat.drawings)) {
@@ -214,7 +215,7 @@ impl Shoreside<'_> {
         }
     }
 
-    /// Passes people's commands to the boats of this bridge.
+    /// Passes people's commands to the boats connected to this bridge.
     fn pass_commands(&mut self, community: &mut Community) {
         let mut heard = community.take_heard();
         if let Some(share) = &mut self.share {
@@ -238,7 +239,7 @@ impl Shoreside<'_> {
     }
 }
 
-/// Passes a command for this boat or for all.
+/// Passes a command to this boat if it is for this boat or for all boats.
 fn pass_command(boat: &mut Community, msg: &Msg) {
     let own = format!("_{}", boat.name.to_uppercase());
     let command = msg
@@ -253,7 +254,7 @@ fn pass_command(boat: &mut Community, msg: &Msg) {
     }
 }
 
-/// Whether the node's keys, if any, allow it to see the true state.
+/// Checks that the node's keys, if any, give access to the true state.
 pub(crate) fn check_keys(bus: &Bus) -> Result<(), String> {
     use bus::keys::Identity;
     match &bus.keys {

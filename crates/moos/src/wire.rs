@@ -1,15 +1,15 @@
 //! The wire format of MOOSDB, protocol 4.1: messages, packets and their framing, without sockets.
 //!
 //! All numbers are little-endian. A packet consists of its length in bytes (i32, itself included),
-//! the number of messages (i32), a compression flag (u8, always 0), and the messages. A datagram of
-//! pShare is one message without a packet.
+//! the number of messages (i32), a compression flag (u8, always 0), and the messages. A pShare
+//! datagram is a single message without a packet around it.
 
 use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// The greeting of a client: 32 bytes, padded with zeros.
 pub const GREETING: [u8; 32] = *b"ELKS CAN'T DANCE 2/8/10\0\0\0\0\0\0\0\0\0";
-/// The key of a handshake whose client accepts packets at any time.
+/// The key in the handshake of a client that accepts packets at any time.
 pub const ASYNCHRONOUS: &str = "asynchronous";
 /// Maximum length of a packet, bytes.
 pub const PACKET_MAX: usize = 4 << 20;
@@ -117,7 +117,7 @@ impl Msg {
         }
     }
 
-    /// The string, if the value is a valid one.
+    /// The string, if the value is a valid string.
     pub fn as_text(&self) -> Option<&str> {
         std::str::from_utf8(&self.bytes)
             .ok()
@@ -132,7 +132,7 @@ impl Msg {
         }
     }
 
-    /// The boolean value of `true`, `false` and numbers.
+    /// The value as a boolean, if it is `true`, `yes`, `on`, `false`, `no`, `off` or a number.
     pub fn as_bool(&self) -> Option<bool> {
         match self
             .as_text()
@@ -152,7 +152,7 @@ pub enum Malformed {
     /// An invalid length.
     #[error("a length is {0}, which is out of range")]
     Length(i64),
-    /// An unknown type of value.
+    /// An unknown data type.
     #[error("a data type is byte {0}, expected D, S or B")]
     DataType(u8),
     /// A name that is not UTF-8.
@@ -191,7 +191,7 @@ impl<'a> Reader<'a> {
         Ok(f64::from_le_bytes(self.array()?))
     }
 
-    /// A length from `min` to `max`.
+    /// Reads a length, which must be from `min` to `max`.
     fn length(&mut self, min: usize, max: usize) -> Result<usize, Malformed> {
         let given = self.i32()?;
         usize::try_from(given)
@@ -224,7 +224,7 @@ impl<'a> Reader<'a> {
         let key = body.name()?;
         let [time_s, number, number2] = [body.f64()?, body.f64()?, body.f64()?];
         let bytes = body.sized()?.to_vec();
-        // Newer programs may append fields; each message states its length.
+        // The rest is ignored, because newer programs may append fields.
         Ok(Msg {
             id,
             kind: Kind(kind),
@@ -241,7 +241,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Decodes one message, as in a datagram of pShare.
+/// Decodes one message, as in a pShare datagram.
 ///
 /// # Errors
 /// [`Malformed`] names the defect.
@@ -345,13 +345,13 @@ pub(crate) const DRAWINGS: [&str; 6] = [
     "VIEW_MARKER",
     "VIEW_RANGE_PULSE",
 ];
-/// Maximum number of values that wait for the bridge.
+/// Number of waiting values at which further drawings are dropped.
 const HEARD_MAX: usize = 1024;
 /// Maximum length of a drawing for the shoreside, bytes.
 const DRAWING_MAX: usize = 8 << 10;
 
-/// Stores the newest value of each variable, but every drawing, because one variable carries many
-/// of them.
+/// Stores a value as the newest of its variable. Drawings with different texts are all kept,
+/// because one variable carries many of them.
 pub(crate) fn keep(heard: &mut BTreeMap<String, Msg>, msg: Msg) {
     let is_drawing = DRAWINGS.contains(&msg.key.as_str());
     let key = match msg.as_text() {

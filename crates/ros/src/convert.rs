@@ -1,6 +1,6 @@
-//! Converts Squall's frames to those of REP 103: north-east-down with headings clockwise from north
-//! becomes east-north-up with yaw anticlockwise from east. Body axes to starboard and down become
-//! axes to port and up (`base_link`).
+//! Converts Squall's coordinates to those of REP 103: north-east-down with headings clockwise from
+//! north becomes east-north-up with yaw anticlockwise from east. Body axes to starboard and down
+//! become axes to port and up (`base_link`).
 
 use crate::message::{
     Header, Imu, NavSatFix, Odometry, Pose, Quaternion, TransformStamped, Twist, TwistStamped,
@@ -12,15 +12,15 @@ use primitives::frame::LatLon;
 use primitives::{Ned, SimTime, math};
 use std::f64::consts::FRAC_PI_2;
 
-/// The frame of the field: east, north and up from its datum.
+/// The coordinate frame of the field: east, north and up from its datum.
 pub const MAP: &str = "map";
 
-/// The motion of a boat, as measured or true.
+/// The motion of a boat: measured or true.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// The time of the motion.
     pub at: SimTime,
-    /// The time of the position.
+    /// The time of the position fix.
     pub fix: SimTime,
     /// Position and motion over the ground.
     pub nav: Nav,
@@ -30,15 +30,15 @@ pub struct Motion {
     pub roll_rad: f64,
     /// Pitch, bow up, rad.
     pub pitch_rad: f64,
-    /// Gyro and accelerometers; `None` for the truth.
+    /// Measurements of gyro and accelerometers; `None` for the true motion.
     pub imu: Option<picture::Imu>,
 }
 
 impl Motion {
-    /// Motion as measured by the boat itself.
+    /// The motion that a boat has measured itself.
     pub fn measured(stamp: Stamp, boat: &OwnBoat) -> Motion {
         let (at, nav) = (stamp.valid_ns, boat.nav);
-        // A boat does not measure its attitude: level is the best estimate.
+        // Boats do not measure roll and pitch: level is the best estimate.
         Motion {
             at,
             fix: boat.fix_ns,
@@ -50,7 +50,7 @@ impl Motion {
         }
     }
 
-    /// The truth.
+    /// The true motion of a boat.
     pub fn truth(stamp: Stamp, boat: &VehicleTruth) -> Motion {
         let VehicleTruth {
             nav,
@@ -80,15 +80,15 @@ impl Motion {
     /// Position and orientation of `base_link` in [`MAP`].
     pub fn pose(&self) -> Pose {
         let [x, y, _] = enu(self.nav.at());
-        // Roll keeps its sign, because the forward axis is the same in both frames. The pitch axis
-        // points to port instead of starboard.
+        // Roll keeps its sign, because the forward axis is the same in both conventions. Pitch
+        // changes its sign, because its axis points to port instead of starboard.
         Pose {
             position: [x, y, self.heave_m],
             orientation: quaternion(self.roll_rad, -self.pitch_rad, FRAC_PI_2 - self.nav.psi_rad),
         }
     }
 
-    /// `nav_msgs/Odometry`: the pose in [`MAP`], the twist in `base_link`.
+    /// `nav_msgs/Odometry`: the pose in [`MAP`] and the twist in `base_link`.
     pub fn odometry(&self, base_link: &str) -> Odometry {
         let Nav {
             surge_m_s,
@@ -182,12 +182,12 @@ impl Motion {
     }
 }
 
-/// A horizontal vector in east, north and up.
+/// Converts a horizontal vector to east, north and up.
 pub fn enu(vector: Ned) -> Vector3 {
     [vector.east, vector.north, 0.0]
 }
 
-/// The orientation after a roll about x, a pitch about y and a yaw about z, in fixed axes.
+/// The orientation after a roll about x, a pitch about y and a yaw about z, all about fixed axes.
 pub fn quaternion(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> Quaternion {
     let [(sr, cr), (sp, cp), (sy, cy)] =
         [roll_rad, pitch_rad, yaw_rad].map(|angle| math::sin_cos(angle / 2.0));
@@ -203,7 +203,7 @@ pub fn quaternion(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> Quaternion {
 mod tests {
     use super::*;
 
-    /// A boat 3 m north and 4 m east of the datum with a heading of 30 degrees, which makes 2 m/s
+    /// A boat 3 m north and 4 m east of the datum, with a heading of 30 degrees. It moves at 2 m/s
     /// ahead and 0.5 m/s to starboard, and turns clockwise.
     fn motion() -> Motion {
         let nav = Nav {

@@ -1,5 +1,5 @@
-//! `diagnostic_msgs/DiagnosticArray`: the bridge itself, and the gateways of real and emulated
-//! boats.
+//! `diagnostic_msgs/DiagnosticArray`: the status of the bridge itself, and of the gateways of real
+//! and emulated boats.
 
 use crate::message::{DiagnosticArray, DiagnosticStatus, Header};
 use messages::external::GatewayStatus;
@@ -13,7 +13,7 @@ const WARN: u8 = 1;
 const ERROR: u8 = 2;
 const STALE: u8 = 3;
 
-/// Silence after which a gateway counts as stale. Gateways report several times a second.
+/// Silence after which a gateway counts as stale. Gateways report once a second.
 const SILENCE: Duration = Duration::from_secs(3);
 
 /// The bridge's own status.
@@ -35,7 +35,7 @@ pub fn bridge(game: &str, boats: &[String], refused: Refusals) -> DiagnosticStat
     }
 }
 
-/// The status of a boat's gateway, received this long ago.
+/// The status of a boat's gateway; `age` is the time since it was received.
 pub fn gateway(status: &GatewayStatus, age: Duration) -> DiagnosticStatus {
     let newest = status
         .failsafes
@@ -63,7 +63,7 @@ pub fn gateway(status: &GatewayStatus, age: Duration) -> DiagnosticStatus {
         ("age of the fix, s".to_owned(), number(status.nav_age_s)),
         ("battery, V".to_owned(), number(status.battery_v)),
         (
-            "clearance of the geofence, m".to_owned(),
+            "clearance to the geofence, m".to_owned(),
             number(status.geofence.as_ref().and_then(|f| f.clearance_m)),
         ),
         ("last sentence".to_owned(), status.last_sent.clone()),
@@ -84,7 +84,7 @@ pub fn gateway(status: &GatewayStatus, age: Duration) -> DiagnosticStatus {
     }
 }
 
-/// All statuses at this game time.
+/// A message with these statuses, stamped with the game time.
 pub fn array(at: SimTime, status: Vec<DiagnosticStatus>) -> DiagnosticArray {
     DiagnosticArray {
         header: Header {

@@ -66,7 +66,7 @@ fn standing(at: Ned) -> Pose {
     }
 }
 
-/// Fixed parts: edges, scrimmage line and obstacles.
+/// The fixed parts: edges, scrimmage line and obstacles.
 pub fn field(scenario: &Scenario, at: SimTime) -> MarkerArray {
     let field = &scenario.field;
     let closed = |corners: &[Ned]| {
@@ -102,8 +102,8 @@ pub fn field(scenario: &Scenario, at: SimTime) -> MarkerArray {
     MarkerArray { markers }
 }
 
-/// Moving parts: boats as arrows of their length, and flags as spheres, at home or on their
-/// carrier.
+/// The moving parts: boats as arrows of the boats' size, and flags as spheres, at home or on their
+/// carriers.
 pub fn game(scenario: &Scenario, frame: &Frame) -> MarkerArray {
     let at = frame.stamp.valid_ns;
     let boats = frame

@@ -1,5 +1,5 @@
-//! ROS 2 messages that the bridge sends and receives. Fields, their order and their units are those
-//! of the `.msg` files in ROS 2 Jazzy.
+//! ROS 2 messages that the bridge sends and receives. The fields, their order and their units are
+//! those of the `.msg` files in ROS 2 Jazzy.
 
 #![expect(
     missing_docs,

@@ -1,15 +1,14 @@
 //! The names that `rmw_zenoh` gives to topics, services, nodes and messages: keys, liveliness
-//! tokens and attachments, as in its design document.
+//! tokens and attachments, as specified in its design document.
 //!
 //! The crate `hiroz-protocol` implements these too, in twelve times as much code. It is
-//! experimental, and would tie the bridge to its own zenoh version, all for four formats and 33
-//! bytes.
+//! experimental, and would tie the bridge to its own zenoh version.
 
 use crate::type_hash::type_hash;
 use xxhash_rust::xxh3::xxh3_128;
 
-/// The quality of service of all endpoints: reliable, volatile, the last ten messages. Empty parts
-/// select the defaults.
+/// The quality of service of all endpoints: reliable, volatile, keep the last ten messages. Empty
+/// parts select the defaults.
 const QOS: &str = "::,10:,:,:,,";
 
 /// The kind of an endpoint.
@@ -100,7 +99,7 @@ pub fn gid(token: &str) -> [u8; 16] {
     xxh3_128(token.as_bytes()).to_le_bytes()
 }
 
-/// The attachment of a message: its number from 1, the time of sending in ns since 1970, and its
+/// The attachment of a message: its number (from 1), the time of sending (ns since 1970), and its
 /// sender.
 pub fn attachment(sequence: i64, sent_ns: i64, gid: [u8; 16]) -> Vec<u8> {
     [
@@ -112,8 +111,8 @@ pub fn attachment(sequence: i64, sent_ns: i64, gid: [u8; 16]) -> Vec<u8> {
     .concat()
 }
 
-/// The attachment of the answer to a request with this attachment: its number and sender, with a
-/// new time. `None` if `request` is not an attachment.
+/// The attachment of an answer: the number and sender in the attachment of the request, with a new
+/// time. `None` if `request` is not an attachment.
 pub fn answer_attachment(request: &[u8], sent_ns: i64) -> Option<Vec<u8>> {
     let gid = request
         .get(17..33)
@@ -133,7 +132,7 @@ pub fn is_ros_name(name: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// The examples in `rmw_zenoh`'s design document, for different types.
+    /// The examples of `rmw_zenoh`'s design document, applied to other types.
     #[test]
     fn keys_and_tokens_are_those_of_rmw_zenoh() {
         let hash = "RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a";

@@ -12,7 +12,7 @@ fn manifest() -> String {
 <package format="3">
   <name>squall_msgs</name>
   <version>{version}</version>
-  <description>Messages of Squall {version}: pictures, frames, orders and events. Frames are north-east-down.</description>
+  <description>Messages of Squall {version}: pictures, frames, orders and events. Coordinates are north-east-down.</description>
   <maintainer email="squall@localhost">The Squall developers</maintainer>
   <license>MIT</license>
   <license>Apache-2.0</license>

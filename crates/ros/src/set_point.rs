@@ -1,4 +1,4 @@
-//! Requests from ROS 2 for a boat, and the resulting orders while they are valid.
+//! Converts requests from ROS 2 for a boat to orders, for as long as the requests are valid.
 
 use crate::message::Twist;
 use messages::order::Order;
@@ -85,7 +85,7 @@ pub struct Follower {
     ttl: SimTime,
     /// The number of the newest request, and the first decision that used it.
     newest: Option<(u64, SimTime)>,
-    /// The ordered heading (rad) while a twist is valid, and the time of the decision.
+    /// While a twist is valid: the ordered heading (rad), and the time of the decision that set it.
     heading: Option<(f64, SimTime)>,
 }
 

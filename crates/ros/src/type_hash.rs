@@ -118,7 +118,8 @@ pub fn definition(type_name: &str) -> Option<&'static str> {
 /// The hash of a message or service type, for example of `std_msgs/msg/Header`.
 ///
 /// # Panics
-/// If the bridge has no definition of the type or of a nested one: a test covers all types in use.
+/// If the bridge has no definition of the type or of a type nested in it. A test covers all types
+/// in use.
 pub fn type_hash(type_name: &str) -> String {
     let mut described = BTreeMap::new();
     describe(type_name, &mut described);
@@ -163,8 +164,8 @@ fn describe(type_name: &str, described: &mut BTreeMap<String, String>) {
 mod tests {
     use super::*;
 
-    /// As in the keys of `rmw_zenoh_cpp` in ROS 2 Jazzy. `tests/ros_peer.py` compares all types
-    /// with two other implementations.
+    /// Hashes from the keys of `rmw_zenoh_cpp` in ROS 2 Jazzy. `tests/ros_peer.py` compares all
+    /// types with two other implementations.
     #[test]
     fn hashes_are_those_of_ros_2() {
         for (name, want) in [

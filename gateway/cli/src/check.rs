@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// How long to listen, without and with a pre-flight check, s.
+/// Default time to listen, without and with a pre-flight check, s.
 const LISTEN_S: [f64; 2] = [10.0, 30.0];
 /// Maximum length of a displayed sentence or message, characters.
 const LAST_MAX: usize = 90;
@@ -40,7 +40,7 @@ pub struct Args {
     /// How long to listen, s [default: 10, or 30 with --vehicle]
     #[arg(long, value_name = "S", value_parser = seconds)]
     for_s: Option<f64>,
-    /// Runs the pre-flight check for this vehicle, with the field of its game
+    /// Runs the pre-flight check for this vehicle, using the field of its game
     #[arg(long, value_name = "NAME")]
     vehicle: Option<String>,
     /// Gateway settings: a file or a name [default: a Surveyor with conservative limits]
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let gateway = super::gateway_file(args.config.as_deref())?;
     let stop = stop::on_ctrl_c()?;
     let (sender, events) = sync_channel(4096);
-    // A full queue drops events, which is harmless when only listening.
+    // A full queue drops events, which is harmless because this command only listens.
     let take = move |event| drop(sender.try_send(event));
     let link = Link::open(
         &address,

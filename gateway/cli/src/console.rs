@@ -23,23 +23,23 @@ use std::time::{Duration, Instant};
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// Number of failed attempts after which a new session is opened, in case the old one is broken.
 const ATTEMPTS: u64 = 20;
-/// The timeouts, as on the web page.
+/// The same timeouts as on the web page.
 const PATIENCE: Patience = Patience {
     silence: Duration::from_secs(5),
     missing: Duration::from_secs(1),
     unheard: Duration::from_secs(1),
 };
-/// When input ends, wait this long for unfinished stops.
+/// Maximum time to wait for unfinished stops when input ends.
 const LAST: Duration = Duration::from_secs(5);
 /// Polling interval for the end of the program.
 const POLL: Duration = Duration::from_millis(100);
 
 const HELP: &str = "\
-  (empty line), estop     E-stop of all boats
-  all estop               the same; or all disarm, all release, all status
-  NAME estop              E-stop of one boat; NAME disarm puts it in standby
-  NAME arm, NAME release  and every other command of `{gateway} tell`
-  status                  states of all boats, and the time since their last reports
+  (empty line), estop     E-stops all boats
+  all estop               the same; also: all disarm, all release, all status
+  NAME estop              E-stops one boat; NAME disarm puts it in standby
+  NAME arm, NAME release  like all other commands of `{gateway} tell`
+  status                  prints the states of all boats, and the ages of their last reports
   quit                    exits, as does end of input
 ";
 
@@ -56,8 +56,8 @@ const HELP: &str = "\
     "  echo all estop | {gateway} console --game day",
 )))]
 pub struct Args {
-    /// Address of a gateway's control port, as the gateway prints it; at most one per boat
-    /// [default: those of the gateways on this machine and in the game]
+    /// Address of a gateway's control port, as the gateway prints it; at most one per boat.
+    /// Gateways on this machine and in the game are found without it
     #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     gateway: Vec<SocketAddr>,
     #[command(flatten)]
@@ -128,11 +128,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 impl Console {
-    /// Runs commands until the input ends, the operator quits, or Ctrl-C.
+    /// Runs commands until the input ends, or the operator quits or presses Ctrl-C.
     fn read_lines(&self) {
         let is_terminal = std::io::stdin().is_terminal();
         let (sender, lines) = std::sync::mpsc::channel();
-        // A thread that is waiting for a key cannot be stopped; it ends with the process.
+        // A thread that is waiting for input cannot be stopped; it ends with the process.
         std::thread::spawn(move || {
             for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
                 if sender
@@ -183,7 +183,7 @@ impl Console {
             self.client.stop(target, stop);
             return Ok(());
         }
-        // The latest request takes precedence.
+        // The new request takes precedence over unfinished stops.
         if words.command != CommandArg::Status {
             self.client.cancel(target);
         }
@@ -200,7 +200,7 @@ impl Console {
         };
         let console = self.clone();
         let asked = clock::now();
-        // A separate thread: a slow answer must not delay other commands.
+        // Ask on a separate thread: a slow answer must not delay other commands.
         std::thread::spawn(move || {
             let ports = console.ports();
             let session = console.session.visit(|session| session.clone());
@@ -311,7 +311,7 @@ impl Console {
         let given = self.leaf.access.token().ok().flatten();
         for entry in self.leaf.local_gateways(true) {
             let token = given.clone().or_else(|| entry.token?.parse().ok());
-            // On failure, the next round retries.
+            // If this fails, the next round tries again.
             drop(
                 self.client
                     .add_gateway(entry.control, Some(&entry.vehicle), token),

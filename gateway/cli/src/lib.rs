@@ -1,5 +1,5 @@
-//! The commands of the boat's program: connect a real boat to a game, check it, stop it and command
-//! it.
+//! The commands of the boat's program: they connect a real boat to a game, and check, stop and
+//! command it.
 //!
 //! `squall gateway` has the same commands. Open `surveyor.rs` first: it drives a boat.
 
@@ -40,13 +40,13 @@ pub const KINDS: &[Kind] = &[
 /// The gateway's subcommands.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Connects a real boat to a game, where agents drive it like any other.
+    /// Connects a real boat to a game, where agents drive it like a simulated boat.
     Surveyor(surveyor::Args),
     /// Checks a boat without commanding it; with --vehicle, runs the pre-flight check.
     Check(check::Args),
     /// Stops a boat directly: sends zero thrust and standby over its link.
     Stop(stop_boat::Args),
-    /// Sends an operator command to a boat's gateway, such as arm, disarm, estop or release.
+    /// Sends an operator command, such as arm, disarm, estop or release, to a boat's gateway.
     Tell(tell::Args),
     /// Operates boats from a prompt, over connections that stay open so that stops are fast.
     Console(console::Args),
@@ -66,7 +66,7 @@ fn gateway_file(path: Option<&Path>) -> Result<Gateway> {
     path.map_or_else(|| Ok(gateway::config::default_gateway()), load)
 }
 
-/// Runs the command. The gateway's recording names the program's `commit`.
+/// Runs the command. `commit` is the program's commit, which recordings state.
 ///
 /// # Errors
 /// The command's failure.

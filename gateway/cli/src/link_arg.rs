@@ -18,7 +18,7 @@ pub fn to_listen(text: &str) -> Result<LinkAddress, String> {
     LinkAddress::to_listen(text).map_err(without_address)
 }
 
-/// The fault without the address, which the argument parser prints.
+/// The fault without the address, because the argument parser prints the address.
 fn without_address(LinkAddressError { found, allowed, .. }: LinkAddressError) -> String {
     format!("{found}, expected {allowed}")
 }

@@ -51,7 +51,7 @@ impl Log {
         }
     }
 
-    /// Prints a status line that the next one overwrites; only on a terminal.
+    /// On a terminal, prints a status line that the next one overwrites.
     pub fn status(&self, status: &GatewayStatus) {
         if self.is_live && !self.is_quiet {
             self.printer.print(Line::Status(brief(status)));
@@ -70,7 +70,7 @@ impl Log {
         self.printer.print(Line::Lasting(lines));
     }
 
-    /// Prints the last lines after all queued ones.
+    /// Prints the last lines after all queued ones, and ends the log.
     pub fn end(self, lines: String) {
         self.printer.end(Line::Lasting(lines));
     }

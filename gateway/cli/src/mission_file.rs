@@ -1,4 +1,4 @@
-//! Missions in `.sea` files: the lines to be sent to a boat.
+//! Reads missions from `.sea` files, which contain the lines to be sent to a boat.
 
 use anyhow::{Context, Result, anyhow};
 use gateway::nmea::{Command, Framer, Mode, Sentence, checksum};
@@ -34,7 +34,8 @@ struct Lines {
     places: Vec<[f64; 2]>,
     /// Number of mission lines so far: settings and waypoints.
     count: usize,
-    /// The line that announces the number of mission lines to the boat, and that number.
+    /// The number of the line that announces the count of mission lines to the boat, and that
+    /// count.
     announced: Option<(usize, f64)>,
 }
 
@@ -47,7 +48,7 @@ fn mission_of(text: &str) -> Result<Mission, Mistake> {
         let wrong = |why: String| (Some(i + 1), why);
         if !before.is_empty() {
             return Err(wrong(format!(
-                "{before:?} is not a sentence, expected $ at its start"
+                "{before:?} is not a sentence; sentences start with $"
             )));
         }
         for sentence in sentences {
@@ -90,7 +91,7 @@ impl Lines {
                 let next = self.places.len();
                 if usize::from(waypoint.index) != next {
                     return Err(format!(
-                        "waypoint {}, expected {next}; waypoints are in order, and 0 is the recovery point",
+                        "waypoint {}, expected {next}; waypoints must be in order, beginning with 0, the recovery point",
                         waypoint.index
                     ));
                 }
@@ -129,7 +130,7 @@ impl Lines {
         }
         let throttle_pct = self
             .throttle_pct
-            .ok_or_else(|| (None, "no PSEAR with the throttle".to_owned()))?;
+            .ok_or_else(|| (None, "no PSEAR (throttle) sentence".to_owned()))?;
         let mut places = self.places.into_iter();
         match (places.next(), places.as_slice()) {
             (Some(erp), [_, ..]) => Ok(Mission {
@@ -139,7 +140,7 @@ impl Lines {
             }),
             _ => Err((
                 None,
-                "expected OIWPL with index 0, the recovery point, and at least one waypoint"
+                "expected OIWPL sentences with index 0 (the recovery point) and at least one waypoint"
                     .to_owned(),
             )),
         }

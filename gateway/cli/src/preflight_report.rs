@@ -16,7 +16,7 @@ pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
     };
     write(
         path,
-        &(serde_json::to_string_pretty(report).context("a report is JSON")? + "\n"),
+        &(serde_json::to_string_pretty(report).context("cannot encode the report as JSON")? + "\n"),
     )?;
     write(&path.with_extension("txt"), &report.text())
 }

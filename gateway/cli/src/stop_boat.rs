@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let (sender, events) = sync_channel(EVENTS_MAX);
-    // A full queue drops events: the boat will report again.
+    // A full queue drops events, which is harmless: the boat will report again.
     let take = move |event| drop(sender.try_send(event));
     let settings = LinkSettings {
         silence: None,
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         ),
         (_, None) => {
             bail!(
-                "{address} received zero thrust and standby for {} s, but does not report its mode",
+                "sent zero thrust and standby to {address} for {} s, but the boat does not report its mode",
                 args.wait_s
             )
         }
@@ -141,7 +141,7 @@ fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
         }
         Ok(reply) => {
             terminal::remark(&format!(
-                "the gateway of {} holds the link and is {}",
+                "the gateway of {} holds the link, but its link to the boat is not up: {}",
                 entry.vehicle, reply.status.link
             ));
             false

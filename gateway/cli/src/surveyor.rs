@@ -25,7 +25,7 @@ const KEY_ANSWER: Duration = Duration::from_secs(2);
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Name of the vehicle in the game, which must set source = "external" for it
+    /// Name of the vehicle; the game must define it with source = "external"
     #[arg(long, value_name = "NAME")]
     vehicle: String,
     /// Link to the boat: tcp://HOST:PORT, udp://HOST:PORT, udp-listen://0.0.0.0:14550 or
@@ -48,7 +48,7 @@ pub struct Args {
     /// Report of a passed `gateway check --vehicle`, needed to arm if the gateway file requires it
     #[arg(long, value_name = "FILE")]
     preflight: Option<PathBuf>,
-    /// Arms without a pre-flight report, under the responsibility of this person
+    /// Allows arming without a pre-flight report; takes the name of the person responsible
     #[arg(long, value_name = "PERSON", conflicts_with = "preflight")]
     without_preflight: Option<String>,
     /// Records to this file [default: runs/gateway-NAME-UTC.mcap]
@@ -104,7 +104,8 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let silence = Duration::from_secs_f64(args.silence_s);
-    // No guard for an emulated boat at game pace: a busy machine would look like a hung gateway.
+    // No guard for an emulated boat at game pace: on a busy machine, the gateway would seem to
+    // hang.
     let guard = if args.at_game_pace {
         None
     } else {
@@ -123,7 +124,7 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
             log.remark(format!("{}: looking for the game: {reason}", args.vehicle))
         }
         NodeEvent::Recording(file) => log.remark(format!("recording to {}", file.display())),
-        // Only emulated boats have other ports.
+        // Only emulated boats report this.
         NodeEvent::Listening { .. } => {}
         NodeEvent::ControlPort {
             address: control,
@@ -152,12 +153,12 @@ pub(crate) fn run(args: &Args, commit: &'static str) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Registers a gateway for operators on this machine, and tells them how to reach it.
+/// Registers a gateway for operators on this machine, and prints how to reach it.
 fn announce(entry: &GatewayEntry, for_parent: bool, log: &Log) -> Option<Registration> {
     // If registration fails, operators must be given the address; nothing else is affected.
     let registered = bus::register_gateway(entry).inspect_err(|error| {
         log.remark(format!(
-            "operators on this machine need the address: {error}"
+            "operators on this machine must enter the address themselves: {error}"
         ));
     });
     let control = entry.control;
@@ -173,7 +174,8 @@ fn announce(entry: &GatewayEntry, for_parent: bool, log: &Log) -> Option<Registr
     registered.ok()
 }
 
-/// Parses the address of the control port, which must be usable from other machines.
+/// Parses the address of the control port. It must be specific, because operators are told to use
+/// it.
 fn control_address(text: &str) -> Result<SocketAddr, String> {
     let address = address(text)?;
     if address.ip().is_unspecified() {

@@ -20,7 +20,7 @@ const THRUST_MIN_PCT: f64 = 10.0;
 
 /// Asks questions at the terminal.
 pub(super) struct Guide {
-    /// Typed lines; `None` if there is no guide.
+    /// Typed lines; `None` if no guide is wanted.
     lines: Option<Receiver<String>>,
 }
 
@@ -49,7 +49,8 @@ impl Guide {
         }
     }
 
-    /// Asks a question and keeps listening to the boat until it is answered.
+    /// Asks a question and keeps listening to the boat until the user answers or [`LONGEST_S`] has
+    /// passed.
     fn is_agreed(&self, question: &str, listener: &mut Listener) -> bool {
         terminal::remark(&format!("{question} [y/N]"));
         let start = listener.now();
@@ -61,7 +62,7 @@ impl Guide {
         answer.is_some_and(|answer| matches!(answer.trim(), "y" | "Y" | "yes"))
     }
 
-    /// Prints an instruction and listens until Enter is pressed.
+    /// Prints an instruction and listens until Enter is pressed or [`LONGEST_S`] has passed.
     fn until_enter(&self, what: &str, listener: &mut Listener, take: &mut dyn FnMut(&Listener)) {
         terminal::remark(&format!("{what} Press Enter when done."));
         let start = listener.now();
@@ -128,7 +129,7 @@ fn swing(guide: &Guide, listener: &mut Listener, gateway: &Gateway) -> Check {
     }
 }
 
-/// The declination to add to the compass, rad.
+/// The declination to add to the compass heading, rad.
 fn declination_rad(listener: &Listener, gateway: &Gateway) -> Result<f64, String> {
     match (
         gateway.compass,
@@ -159,8 +160,7 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     let mut tells = false;
     let mut by_remote = false;
     let mut seen = [false; 2];
-    let what =
-        "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
+    let what = "Run both propellers ahead and astern by remote control, at 20 per cent for two seconds each.";
     guide.until_enter(what, listener, &mut |listener| {
         let Some(control) = listener.check.control else {
             return;

@@ -69,7 +69,7 @@ pub(super) enum CommandArg {
     Status,
     /// Lets agents drive the boat, if it is ready
     Arm,
-    /// Puts the boat in standby and stops following orders
+    /// Puts the boat in standby; agents no longer drive it
     Disarm,
     /// Keeps the boat in standby until it is released
     Estop,
@@ -260,7 +260,7 @@ pub(super) fn to_boat(
     }
 }
 
-/// Ends an E-stop of all boats in the game and at these ports; returns the failures.
+/// Ends an E-stop of all boats in the game and at these ports. Returns the failures.
 pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec<String> {
     std::thread::scope(|scope| {
         let release = |port: &Port| match port.ask(&GatewayCommand::Fleet(FleetCommand::Release)) {
@@ -289,7 +289,7 @@ pub(super) fn release_all(ports: &[Port], game: Option<&(Bus, GameName)>) -> Vec
     })
 }
 
-/// Stops one boat or all boats on every known path, and prints the reports.
+/// Stops one boat or all boats over every known path, and prints the reports.
 fn tell_stop(args: &Args, command: StopCommand) -> Result<ExitCode> {
     let target = (args.words.vehicle != ALL).then_some(args.words.vehicle.as_str());
     let ports = ports_meant(args)?;
@@ -375,7 +375,7 @@ fn join(leaf: &LeafArgs, target: Option<&str>, client: &StopClient) -> Result<()
 
 /// The result of one part of a command to all boats.
 enum Outcome {
-    /// The game accepted the command, and so did all boats in it.
+    /// The game accepted the command for all its boats.
     Told,
     /// No game exists.
     NoGame(Error),

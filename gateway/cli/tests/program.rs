@@ -44,8 +44,8 @@ impl Folder {
         (output, said.concat())
     }
 
-    /// Starts a gateway for a boat, in a game without other nodes. It exits when its standard input
-    /// closes.
+    /// Starts a gateway for a boat in a game that does not exist. The gateway exits when its
+    /// standard input closes.
     fn gateway(&self, boat: &Boat) -> Running {
         let link = boat.link.reach();
         let args = [
@@ -90,7 +90,7 @@ impl Drop for Running {
     }
 }
 
-/// A boat's end of a link, which reports standby and records what it receives.
+/// The boat's end of a link. It reports standby, and records the sentences that it receives.
 struct Boat {
     link: Arc<Link>,
     received: Receiver<String>,
@@ -132,7 +132,7 @@ impl Boat {
         }
     }
 
-    /// Waits until this is received, starting after the previous match.
+    /// Waits until `what` is received, starting after the previous match.
     fn wait_for(&self, what: &str) {
         let start = Instant::now();
         let mut text = String::new();

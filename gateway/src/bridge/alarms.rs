@@ -59,7 +59,7 @@ impl Alarm {
     }
 }
 
-/// A fault of a thruster current.
+/// A fault that an electrical current shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wrong {
     Bilge,
@@ -90,7 +90,7 @@ pub(super) struct Alarms {
     notice: Option<String>,
     /// The current tilt, degrees.
     tilt: Alarm,
-    /// Abnormal thruster currents, A, by fault (order of `WRONGS`), then side (port first).
+    /// Abnormal currents, A, by fault (order of `WRONGS`), then side (port first).
     currents: [[Alarm; 2]; 3],
 }
 
@@ -179,7 +179,7 @@ impl Alarms {
                 // Boats without current sensors report zeros; a current on the other side shows
                 // that the boat has sensors.
                 let is_measured = there.is_some_and(|amps| amps.abs() > watch.thruster_min_a);
-                // In a turn one side may have zero thrust and draw nothing, so a side without
+                // In a turn, one side may have zero thrust and draw nothing, so a side without
                 // current is a fault only if both sides are ordered to run.
                 let is_ordered = ordered
                     .is_some_and(|sides| sides.iter().all(|pct| pct.abs() >= ORDERED_MIN_PCT));

@@ -77,14 +77,14 @@ impl ControlLog {
     pub(super) fn mode_mismatch(&self, now: SimTime) -> Option<Mode> {
         let since = self.mismatch_since?;
         let (at, report) = self.reported?;
-        // A report from before the command says nothing about it.
+        // A report from before the command does not show its effect.
         ((now - since).as_s() > self.watch.echo_s && at > since).then_some(report.shown.mode)
     }
 
-    /// Why we do not command the boat now, according to its reports.
+    /// Why we do not command the boat now, according to its reports, if so.
     pub(super) fn fault(&self, now: SimTime) -> Option<ControlFault> {
         // Some boats report no operator. For these, the owner can declare in the file that the
-        // gateway commands them; otherwise silence means that someone else may command it.
+        // gateway commands them; otherwise, silence means that someone else may command the boat.
         let silent = (!self.watch.assumed).then_some(ControlFault::Unknown);
         let Some((at, report)) = self.reported else {
             return silent;

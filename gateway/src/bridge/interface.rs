@@ -20,7 +20,7 @@ pub struct Plan {
     /// The boat's site, if known from the start; otherwise [`Input::Site`] supplies it.
     #[serde(flatten)]
     pub site: Option<Site>,
-    /// Whether the bridge arms once without a request, as soon as it is ready.
+    /// Whether the bridge arms the boat once without a request, as soon as the boat is ready.
     pub arms_itself: bool,
     /// Whether to send the boat only standby, whatever the orders.
     #[serde(default)]

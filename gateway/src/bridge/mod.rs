@@ -49,7 +49,7 @@ const GAP_MIN_S: f64 = 0.045;
 const TASK_AGAIN_S: f64 = 1.0;
 /// Interval between reports of invalid navigation, s.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
-/// Number of failsafes kept in the status.
+/// Maximum number of failsafes kept in the status.
 const FAILSAFES_MAX: usize = 32;
 
 /// The newest order, its time of arrival, and the time of the picture that it answers.
@@ -309,9 +309,8 @@ impl Bridge {
             self.counters.bad_orders += 1;
             return;
         };
-        // No order can answer a picture that precedes the first one. An order is fresh if its
-        // picture is newer, not because it has just arrived: a sim that keeps sending the same
-        // order must not keep a boat moving.
+        // An order is fresh if its picture is newer than that of the last order, not because it has
+        // just arrived: a sim that keeps sending the same order must not keep a boat moving.
         let newer = given > self.order.map_or(SimTime::ZERO, |current| current.given);
         if newer {
             self.counters.orders += 1;

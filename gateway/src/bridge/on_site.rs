@@ -47,8 +47,8 @@ impl OnSite {
         }
     }
 
-    /// The first part of a mission that is outside the geofence, if any: a waypoint, a leg, or the
-    /// path to the first waypoint.
+    /// The first part of a mission that is outside the geofence, if any: a waypoint, the recovery
+    /// point, a leg, or the path to the first waypoint.
     pub(super) fn outside(&self, now: SimTime, mission: &Mission) -> Option<String> {
         // The upload rejects invalid positions with a better reason.
         let on_globe =
@@ -59,7 +59,7 @@ impl OnSite {
             .chain(&mission.waypoints)
             .filter(on_globe);
         if !places.map(place).all(|place| area.contains(place)) {
-            return Some("one of its waypoints is outside the geofence".to_owned());
+            return Some("a waypoint or the recovery point is outside the geofence".to_owned());
         }
         let boat = self.estimator.nav(now).map(|(nav, _)| nav.at());
         // The path to the first waypoint is also a leg: the boat drives straight there, whatever

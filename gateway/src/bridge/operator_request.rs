@@ -14,8 +14,8 @@ pub(super) fn request_from(command: &OperatorCommand) -> Option<OperatorRequest>
         OperatorCommand::Release => Some(OperatorRequest::Release(Scope::Boat)),
         OperatorCommand::StationKeep => Some(OperatorRequest::Delegate(Task::StationKeep)),
         OperatorCommand::GoToErp => Some(OperatorRequest::Delegate(Task::GoToErp)),
-        // A mission does not arm the boat until its upload has ended; a mode has numbers that must
-        // be checked against the limits in the file.
+        // A mission must be uploaded first. A mode has numbers that must be checked against the
+        // limits in the gateway file.
         OperatorCommand::Status | OperatorCommand::Mission(_) | OperatorCommand::Mode(_) => None,
     }
 }

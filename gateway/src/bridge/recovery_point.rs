@@ -7,7 +7,7 @@ use crate::protocol::ControlReport;
 /// Maximum distance (degrees) at which a reported home counts as our recovery point: one metre.
 const HOME_DEG: f64 = 9e-6;
 
-/// Progress of the boat's recovery point.
+/// The state of the boat's recovery point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum RecoveryPoint {
     /// The boat has no known recovery point.

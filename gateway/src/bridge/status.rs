@@ -18,7 +18,7 @@ pub(super) struct Counters {
 }
 
 impl Bridge {
-    /// The current status, with the conditions missing at the last step. Changes no state, so
+    /// The current status, with the conditions missing at the last step. This changes no state, so
     /// queries do not affect a replay. The node adds the data that only it knows: link name,
     /// control port, latencies.
     pub fn status(&self, now: SimTime) -> GatewayStatus {

@@ -9,7 +9,7 @@ use scenario::{Document, check_corners, check_thrust_map};
 /// Maximum distance of a geofence corner from the first, m. Corners farther away have latitude and
 /// longitude swapped, or an extra digit.
 const EXTENT_MAX_M: f64 = 50_000.0;
-/// A sphere is accurate enough to detect crossing sides.
+/// The radius of a sphere, which is accurate enough to detect crossing sides, m.
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
 
 /// Checks a gateway.

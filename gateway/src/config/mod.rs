@@ -1,4 +1,4 @@
-//! How a gateway drives a real boat, and when it stops it.
+//! How a gateway drives a real boat, and when it stops the boat.
 //!
 //! Units are SI, except where the boat's sentences use others: thrust is in per cent of full ahead.
 //! These types also declare the keys of gateway files, like those in [`scenario::boat`].
@@ -21,7 +21,7 @@ pub struct Gateway {
     /// The boat's protocol.
     #[schemars(extend("default" = "surveyor"))]
     pub protocol: BoatProtocol,
-    /// Whose heading and speed loops steer.
+    /// Whose heading and speed loops control the boat.
     #[schemars(extend("default" = "thrust"))]
     pub drive: Drive,
     /// Magnetic declination, rad, positive east. Default: World Magnetic Model at the field, today.
@@ -39,15 +39,15 @@ pub struct Gateway {
     /// Maximum age of an order before the boat stops, s.
     #[schemars(range(min = 0.1, max = 10), extend("default" = 1))]
     pub order_ttl_s: f64,
-    /// Limits of set-points.
+    /// Limits on set-points.
     pub limits: Limits,
-    /// Requirements on navigation; a violation stops the boat.
+    /// Requirements for navigation data; a violation stops the boat.
     pub nav: NavWatch,
     /// The area that the boat must not leave.
     pub geofence: Geofence,
     /// The box ahead of the boat; another real boat inside it stops this one.
     pub halt: Halt,
-    /// Low battery.
+    /// When the battery counts as low.
     pub battery: BatteryWatch,
     /// Currents that raise alarms, without stopping the boat.
     pub currents: CurrentWatch,
@@ -59,7 +59,8 @@ pub struct Gateway {
     pub preflight: PreflightRule,
     /// The gateway's heading and speed loops, for `drive` "thrust".
     pub loops: Loops,
-    /// Switch commands, sent in this order whenever the link is up and the gateway has control.
+    /// Switch commands, sent once in this order after each connection, when the gateway has
+    /// control.
     #[schemars(length(max = 6))]
     pub startup_words: Vec<SwitchWord>,
     /// Time between two lines of a mission upload, s.
@@ -170,7 +171,7 @@ pub enum CompassFrame {
     True,
 }
 
-/// Limits of set-points.
+/// Limits on set-points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Limits {
     /// Maximum speed, m/s.
@@ -190,7 +191,7 @@ pub struct Limits {
 /// Maximum number of corners of a geofence polygon: every status contains all of them.
 const CORNERS_MAX: usize = 100;
 
-/// Requirements on navigation; a violation stops the boat.
+/// Requirements for navigation data; a violation stops the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NavWatch {
     /// Maximum age of fix and heading, s.
@@ -203,10 +204,11 @@ pub struct NavWatch {
     /// Maximum horizontal dilution of precision, if reported.
     #[schemars(range(min = 0.5, max = 50), extend("default" = 5))]
     pub hdop_max: f64,
-    /// Position jump: excess over the distance that the boat can travel between two fixes, m.
+    /// A position jumps if it moves farther than the boat can between two fixes, plus this
+    /// distance, m.
     #[schemars(range(min = 0.5, max = 100), extend("default" = 5))]
     pub jump_m: f64,
-    /// Frozen position: time with identical digits under thrust, s.
+    /// Time after which a position with identical digits under thrust counts as frozen, s.
     #[schemars(range(min = 0.5, max = 60), extend("default" = 3))]
     pub frozen_s: f64,
 }
@@ -218,12 +220,12 @@ pub struct Geofence {
     /// Default: the field's rectangle plus `margin_m`.
     #[schemars(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180))))]
     pub polygon: Option<Vec<[f64; 2]>>,
-    /// Polygons inside the geofence that the boat must not enter, and must be able to stop short
-    /// of.
+    /// Polygons inside the geofence that the boat must not enter; it must be able to stop before
+    /// reaching them.
     #[schemars(length(max = 50))]
     #[schemars(inner(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180)))))]
     pub keep_out: Vec<Vec<[f64; 2]>>,
-    /// Margin around the field without a `polygon`, m.
+    /// Margin around the field, m; for a geofence without `polygon`.
     #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
     /// Measured stopping distances at zero thrust: pairs of speed through water (m/s) and distance
@@ -234,7 +236,7 @@ pub struct Geofence {
     /// gives a longer distance.
     #[schemars(range(min = 0.01, max = 10), extend("default" = 0.25))]
     pub deceleration_m_s2: f64,
-    /// Time before deceleration starts, s; at least `debounce_s` plus 0.5 s.
+    /// Time before deceleration starts, s; if lower, `debounce_s` plus 0.5 s is used.
     #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub reaction_s: f64,
     /// How long a violation must last before it counts, s.
@@ -265,13 +267,13 @@ pub struct Halt {
     pub clear_s: f64,
 }
 
-/// Low battery.
+/// When the battery counts as low.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BatteryWatch {
     /// Minimum voltage, V; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 22))]
     pub volts_min: f64,
-    /// How long the voltage must stay below `volts_min`, s.
+    /// How long the voltage must stay below `volts_min` to count as low, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
     /// Lithium cells in series, to estimate the charge from the voltage; 0: unknown.
@@ -285,8 +287,8 @@ pub struct CurrentWatch {
     /// Maximum thruster current, A; 0: off. A fouled propeller draws more.
     #[schemars(range(min = 0, max = 1000), extend("default" = 45))]
     pub thruster_max_a: f64,
-    /// Minimum current of a thruster ordered to 20 % or more while the other draws more than this,
-    /// A; 0: off.
+    /// Minimum current of a thruster, A, if both are ordered to 20 % or more and the other one
+    /// draws more than this; 0: off.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0.5))]
     pub thruster_min_a: f64,
     /// Current from which a bilge pump counts as running, A; 0: off.
@@ -312,13 +314,13 @@ pub struct FailsafeActions {
     /// The gateway hung.
     #[schemars(extend("default" = "standby"))]
     pub hung: FailsafeAction,
-    /// After a failsafe for lack of fresh orders: time within which the boat may rearm itself, s,
+    /// Time after a failsafe for lack of fresh orders within which the boat may rearm itself, s,
     /// once orders have been fresh for 1 s and the boat is ready; 0: never.
     #[schemars(range(min = 0, max = 600), extend("default" = 0))]
     pub rearm_within_s: f64,
 }
 
-/// What a boat does after a failsafe; it stops if unable to.
+/// What a boat does after a failsafe; it stops if it cannot do this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FailsafeAction {
@@ -334,7 +336,7 @@ pub enum FailsafeAction {
 /// How the gateway verifies that it controls the boat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlWatch {
-    /// Whether to assume control, for boats that never report it.
+    /// Whether to assume control, for boats that never report who has it.
     #[schemars(extend("default" = false))]
     pub assumed: bool,
     /// Maximum age of the boat's report of who is in control, s.

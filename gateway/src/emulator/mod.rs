@@ -1,9 +1,9 @@
 //! An emulated Surveyor: commands in, telemetry out, without sockets or clocks; an emulated
 //! ArduPilot boat, in `ardupilot`; and ArduPilot's own firmware, in `sitl`.
 //!
-//! It is as strict and as tolerant as a Surveyor is known to be: it sends telemetry even in
-//! standby, follows only the operator in control, and reads four to six fields. By default it has
-//! no watchdog, and follows the last command forever.
+//! The emulated Surveyor is as strict and as tolerant as a real one is known to be: it sends
+//! telemetry even in standby, follows only the operator in control, and reads commands of four to
+//! six fields. By default, it has no watchdog, and follows the last command forever.
 
 mod ardupilot;
 mod autopilot;
@@ -40,7 +40,7 @@ pub struct Plan {
     /// Time without a command after which the boat goes to standby, s; `None` means never.
     pub watchdog_s: Option<f64>,
     /// Whether the boat ignores non-integer set-points and keeps the previous one, as one known
-    /// stand-in does.
+    /// simulator of the boat does.
     pub integers: bool,
     /// Sentences in addition to a Surveyor's.
     pub extra: Vec<Extra>,
@@ -63,7 +63,7 @@ pub enum Port {
 pub struct Emulator {
     plan: Plan,
     frame: LocalFrame,
-    /// By port.
+    /// The framers, by port.
     framers: [Framer; 2],
     /// The operator in control.
     operator: Operator,
@@ -77,7 +77,8 @@ pub struct Emulator {
     sensed: Sensed,
     battery: Battery,
     remark: Option<String>,
-    /// Commands followed, and commands ignored because another operator was in control.
+    /// The numbers of commands followed, and of commands ignored because another operator was in
+    /// control.
     followed: u64,
     ignored: u64,
 }
@@ -153,7 +154,8 @@ impl Emulator {
         &self.command
     }
 
-    /// Commands followed, and commands ignored because another operator was in control.
+    /// The numbers of commands followed, and of commands ignored because another operator was in
+    /// control.
     pub fn counters(&self) -> (u64, u64) {
         (self.followed, self.ignored)
     }
@@ -268,8 +270,8 @@ impl FrontSeat for Emulator {
     fn order(&mut self, now: SimTime) -> Order {
         let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
         let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
-        // The watchdog runs only if a file enables it: it is not published whether Surveyors have
-        // one, and a gateway that is safe without a watchdog is also safe with one.
+        // The watchdog runs only if the settings enable it. It is not published whether Surveyors
+        // have one, and a gateway that is safe without a watchdog is also safe with one.
         if silent && self.command.mode != Mode::Standby {
             self.command = Command::default();
         }

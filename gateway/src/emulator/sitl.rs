@@ -1,9 +1,9 @@
-//! ArduPilot's own firmware as the front seat of a simulated boat: Squall is the physics of its
-//! *software in the loop* (SITL), through SITL's JSON back end.
+//! ArduPilot's own firmware as the front seat of a simulated boat: Squall provides the physics for
+//! its *software in the loop* (SITL), through SITL's JSON back end.
 //!
 //! For each step, the firmware sends its servo outputs as a UDP datagram and waits for a line of
 //! JSON with time, attitude, position, velocity and IMU values. The simulation publishes a boat's
-//! motion at every decision. Between two decisions each coordinate is a cubic function of time, so
+//! motion at every decision. Between two decisions, each coordinate is a cubic function of time, so
 //! that position, velocity and specific force agree. The firmware is therefore one decision behind.
 //! Source: ArduPilot, `libraries/SITL/SIM_JSON.cpp` and `libraries/SITL/examples/JSON/readme.md`.
 
@@ -16,8 +16,9 @@ use std::collections::VecDeque;
 
 /// Standard gravity, m/s², as in the firmware.
 const GRAVITY_M_S2: f64 = 9.80665;
-/// Limits of the requested steps per second. The firmware's default is 1200. Coarser steps delay
-/// its loops so much that it considers its GPS receiver too slow.
+/// Maximum and minimum number of steps per second; requests are limited to this range. The
+/// firmware's default is 1200. Coarser steps delay its loops so much that it considers its GPS
+/// receiver too slow.
 const RATE_MAX_HZ: u16 = 1200;
 const RATE_MIN_HZ: u16 = 50;
 /// Lag behind the simulation (s) beyond which the firmware gets steps of twice the length.
@@ -163,7 +164,7 @@ impl Moment {
 /// The reply to one step. The firmware searches for the keys as strings, in this order.
 #[derive(Serialize)]
 struct State {
-    /// Since the firmware's start, s.
+    /// Time since the firmware's start, s.
     timestamp: f64,
     imu: Imu,
     /// North, east, down of the firmware's home, m.
@@ -176,7 +177,7 @@ struct State {
 
 #[derive(Serialize)]
 struct Imu {
-    /// About the axes forward, to starboard and down, rad/s.
+    /// Rates of turn about the axes forward, to starboard and down, rad/s.
     gyro: [f64; 3],
     /// Specific force along these axes, m/s².
     accel_body: [f64; 3],
@@ -229,7 +230,7 @@ pub struct Sitl {
     moments: VecDeque<Moment>,
     /// Game time of the last reply, and of the firmware's time zero.
     clock: Option<(SimTime, SimTime)>,
-    /// Last servo outputs, and the newest moment when they arrived.
+    /// The last servo outputs, and the time of the newest motion when they arrived.
     outputs: Option<(Outputs, SimTime)>,
     /// Whether the firmware is waiting for a reply.
     waits: bool,
@@ -288,8 +289,8 @@ impl Sitl {
     /// Receives the boat's true motion.
     pub fn observe(&mut self, at: SimTime, truth: &VehicleTruth) {
         let before = self.moments.back();
-        // A quarantined boat may have no finite motion. For the firmware it stays at its last
-        // position.
+        // A quarantined boat may have no finite motion. For the firmware, the boat stays at its
+        // last position.
         if truth.quarantined || before.is_some_and(|before| before.at >= at) {
             return;
         }

@@ -8,7 +8,7 @@ use rules::field::{Field, distance_to_outline, do_meet, is_within, sides};
 use scenario::{Scenario, StartPosition};
 use thiserror::Error;
 
-/// Angle step for drawing a rounded corner, degrees; cuts off less than half a per cent of the
+/// Angle step for drawing a rounded corner, degrees. This cuts off less than half a per cent of the
 /// margin.
 const ROUND_STEP_DEG: f64 = 90.0 / 8.0;
 
@@ -94,8 +94,8 @@ impl GeofenceArea {
             && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
     }
 
-    /// Whether all of the straight line between two points is permitted water. The ends alone are
-    /// not enough: the outline may be concave, and a keep-out may lie between them.
+    /// Whether the whole straight line between two points lies in permitted water. The ends alone
+    /// are not enough: the outline may be concave, and a keep-out may lie between them.
     pub(crate) fn contains_way(&self, from: Ned, to: Ned) -> bool {
         self.contains(from) && self.leads_in(from, to)
     }

@@ -145,7 +145,7 @@ impl GeofenceWatch {
         };
         let mut paths = vec![coasting.path(&still)];
         if coast_m.is_empty() {
-            // Measured values take precedence over assumptions.
+            // Measured values, if any, replace this assumed deceleration.
             paths.push(vec![braked]);
         }
         paths

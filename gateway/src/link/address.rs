@@ -26,8 +26,8 @@ pub enum LinkAddress {
     Tcp(Side, HostPort),
     /// A UDP port. A listening port replies to every sender.
     Udp(Side, HostPort),
-    /// A local UDP port that serves only its first sender: boats send to their ground station's
-    /// port.
+    /// A local UDP port that serves only its first sender, for boats that send to their ground
+    /// station's port.
     UdpListen(HostPort),
     /// A serial line, 8N1.
     Serial {
@@ -185,7 +185,7 @@ fn host_and_port(text: &str, side: Side) -> Result<HostPort, Fault> {
     let (first, ports) = if side == Side::Connects {
         (1, "1 to 65535")
     } else {
-        (0, "0 to 65535; 0 is any free one")
+        (0, "0 to 65535; 0 selects a free port")
     };
     // `parse` alone would accept "+80".
     let number = Some(port).filter(|port| port.bytes().all(|b| b.is_ascii_digit()));

@@ -1,4 +1,4 @@
-//! The connecting side, which reconnects when the connection is lost.
+//! The connecting side of a link, which reconnects when the connection is lost.
 
 use super::address::{HostPort, LinkAddress, Side};
 use super::backoff::Backoff;
@@ -16,11 +16,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Maximum duration of a connection attempt. The wait between attempts counts from the start of
-/// each, so a boat that becomes reachable is connected within a second.
+/// Maximum duration of a connection attempt. An attempt without an answer counts as waiting time,
+/// so a boat that becomes reachable is connected within about a second.
 const CONNECT: Duration = Duration::from_secs(1);
 
-/// How often an attempt is polled.
+/// Interval at which an attempt is polled.
 // A blocking connect cannot be interrupted: a gateway told to exit would wait for an unresponsive
 // address.
 const POLL: Duration = Duration::from_millis(5);
@@ -71,7 +71,7 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
 fn in_words(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::ConnectionRefused => {
-            "connection refused: nothing is listening there; check the address and port, and that the boat is on"
+            "connection refused: nothing is listening there; check the address and port, and that the boat is switched on"
                 .to_owned()
         }
         _ => error.to_string(),
@@ -144,8 +144,8 @@ fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
 /// Sets the options for a TCP connection that carries commands: no delay, and early detection of a
 /// dead peer.
 pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
-    // A sentence is a packet: Nagle's algorithm would delay the second until the first is
-    // acknowledged.
+    // Each sentence is sent as a packet: Nagle's algorithm would delay the second one until the
+    // first is acknowledged.
     socket.set_tcp_nodelay(true)?;
     socket.set_tcp_keepalive(
         &TcpKeepalive::new()
@@ -180,13 +180,13 @@ fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
 
 /// Waits for the first datagram, and connects to its sender.
 // A single peer rather than a server: there is one boat, and the guard needs a socket on which a
-// plain write reaches it. A restarted boat sends from a different port; it is found when silence
-// has ended the link.
+// plain write reaches that boat. A restarted boat sends from a different port; it is found once
+// silence has ended the connection.
 fn await_udp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
     let (socket, _) = udp_server::bind((&at.host, at.port))?;
     let start = clock::now();
     while clock::since(start) < CONNECT && !threads.is_stopped() {
-        // Only peek: the connection will read this datagram first.
+        // Only peek: the connection must still read this datagram.
         match socket.peek_from(&mut [0]) {
             Ok((_, from)) => {
                 socket.connect(from)?;

@@ -66,7 +66,7 @@ impl Connection {
 
     fn read_on(&self, received_at: &mut Instant) -> End {
         let mut buffer = vec![0; CHUNK];
-        // A pseudo-terminal may have no reader for hours, which is not a fault.
+        // A pseudo-terminal may have no other user for hours, which is not a fault.
         let silence = self
             .threads
             .settings
@@ -157,7 +157,7 @@ fn write_on(peer: &Peer, threads: &Threads) {
             Ok(Wrote::Dropped) => threads.note_displaced(1),
             Err(e) => peer.end(End::Lost(format!("cannot write: {e}"))),
         }
-        // Bytes queued meanwhile can still be displaced in the outbox, but not in the driver.
+        // Wait: bytes queued meanwhile can be displaced in the outbox, but not in the driver.
         while clock::since(begun_at) < transit && peer.is_to_end().is_none() {
             threads.stops_within(transit.saturating_sub(clock::since(begun_at)).min(TICK));
         }

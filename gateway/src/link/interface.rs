@@ -10,9 +10,9 @@ use thiserror::Error;
 /// The timeouts of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkSettings {
-    /// Time without bytes after which a peer counts as lost; `None` means never. In any case, the
-    /// peer of a pseudo-terminal may stay silent forever, and a peer of a UDP server for at most 10
-    /// s.
+    /// Time without bytes after which a peer counts as lost; `None` means never. Whatever this
+    /// value, the peer of a pseudo-terminal may stay silent forever, and a peer of a UDP server for
+    /// at most 10 s.
     pub silence: Option<Duration>,
     /// The wait before the second attempt; it then doubles each time.
     pub retry_first: Duration,
@@ -23,8 +23,8 @@ pub struct LinkSettings {
 impl Default for LinkSettings {
     fn default() -> LinkSettings {
         LinkSettings {
-            // A boat sends at least once a second. TCP alone notices a pulled cable after minutes;
-            // UDP and serial lines never do.
+            // A boat sends at least once a second. TCP alone notices a pulled cable only after
+            // minutes; UDP and serial lines never do.
             silence: Some(Duration::from_secs(3)),
             retry_first: Duration::from_millis(100),
             // Waits must not be longer: an E-stop may be waiting for the connection.
@@ -49,7 +49,7 @@ pub enum LinkEvent {
         peer: u32,
         /// When the read returned.
         at: Instant,
-        /// The bytes, whether whole lines or not; at most 64 KiB.
+        /// The bytes, at most 64 KiB; not necessarily whole lines.
         bytes: Vec<u8>,
     },
     /// A peer is lost.
@@ -67,7 +67,7 @@ pub enum LinkEvent {
         retry_in: Duration,
     },
     /// Everything sent with this tag has been written to all peers that were up at the time. Not
-    /// emitted if there were no peers, or if one of them missed it.
+    /// emitted if there were no peers, or if one of them did not accept all bytes.
     Written {
         /// The tag.
         tag: u64,

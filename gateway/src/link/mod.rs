@@ -55,8 +55,8 @@ impl Link {
         Link::open_watched(address, settings, None, on_event)
     }
 
-    /// Like [`Link::open`]. `on_port` may duplicate the descriptors, to write to them when this
-    /// process cannot.
+    /// Like [`Link::open`]. `on_port` may duplicate the descriptors, so that another process can
+    /// write to them when this one cannot.
     ///
     /// # Errors
     /// As for [`Link::open`].

@@ -104,7 +104,7 @@ impl WriteRequest {
         self.priority
     }
 
-    /// Notes that the peer accepted the bytes. Returns the tag after the last peer.
+    /// Notes that the peer accepted the bytes. Returns the tag if all peers have accepted them.
     pub(super) fn settle(mut self) -> Option<u64> {
         self.taken = true;
         if self.completion.settle(false) {

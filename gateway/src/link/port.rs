@@ -20,7 +20,7 @@ const LINGER: Duration = Duration::from_millis(80);
 /// A socket, a serial line or a pseudo-terminal. Two threads may read and write at the same time.
 pub(super) enum Port {
     Tcp(TcpStream),
-    /// Connected.
+    /// A connected socket.
     Udp(UdpSocket),
     /// Shared by all peers of the server, which reads it.
     UdpTo(Arc<UdpSocket>, SocketAddr),
@@ -42,7 +42,7 @@ pub(super) enum Received {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wrote {
     All,
-    /// The line had no space left, which is not an error.
+    /// The start of the bytes was discarded because nobody read it, which is not an error.
     Dropped,
 }
 
@@ -59,7 +59,7 @@ impl Port {
         }
     }
 
-    /// Waits for bytes, at most one tick.
+    /// Waits at most one tick for bytes.
     pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Received> {
         let read = match self {
             Port::Tcp(stream) => (&mut &*stream).read(buffer),
@@ -198,8 +198,8 @@ impl Port {
 fn is_pause(error: &io::Error) -> bool {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::Interrupted => true,
-        // With a system error number it is TCP's ETIMEDOUT, and the connection is lost. Without one
-        // it is our own timeout.
+        // With a system error number, this is TCP's ETIMEDOUT, and the connection is lost. Without
+        // one, it is our own timeout.
         ErrorKind::TimedOut => error.raw_os_error().is_none(),
         _ => false,
     }

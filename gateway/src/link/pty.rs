@@ -172,7 +172,7 @@ fn make_symlink(link: &Path, target: &Path) -> Result<(), LinkError> {
     match fs::symlink_metadata(link) {
         Ok(found) if !found.is_symlink() => {
             return Err(refused(
-                "a file of a different kind exists there, allowed: no file, or an old symlink"
+                "a file of a different kind exists there, expected no file or an old symlink"
                     .to_owned(),
             ));
         }

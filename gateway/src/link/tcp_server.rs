@@ -25,7 +25,7 @@ pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
         match listener.accept() {
             Ok((stream, from)) => serve_peer(threads, stream, from),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-            // For example, too many open files, which may be temporary.
+            // The cause may be temporary, for example too many open files.
             Err(_) if threads.stops_within(TICK) => return,
             Err(_) => {}
         }

@@ -70,7 +70,7 @@ fn receive(
     // Forged senders must not each start a thread.
     } else if peers.len() < PEERS_MAX {
         let port = Port::UdpTo(Arc::clone(socket), from);
-        // Out of threads; the peer may send again later.
+        // If no thread can start, the peer may send again later.
         let Ok(connection) = Connection::open(threads, port, from.to_string()) else {
             return;
         };

@@ -1,7 +1,7 @@
 //! Splits incoming bytes into messages, and counts what it discards.
 //!
-//! Keeps at most one frame. After a damaged frame, the search continues from the byte after its
-//! start, so that a valid frame within a wrongly stated length is still found.
+//! The framer keeps at most one frame. After a damaged frame, it continues from the byte after the
+//! frame's start, so that it still finds a valid frame within a wrongly stated length.
 
 use super::dialect::MavMessage;
 use ::mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, calculate_crc};
@@ -32,8 +32,8 @@ pub struct Received {
     pub message: MavMessage,
 }
 
-/// A message with a valid checksum that the dialect cannot express, because it or one of its values
-/// is unknown.
+/// A message with a valid checksum that the dialect cannot express, because the message or one of
+/// its values is unknown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unreadable {
     /// The system that sent it.
@@ -78,6 +78,7 @@ pub struct Counts {
     /// Messages with a value that the dialect does not know.
     pub unreadable: u64,
     /// Messages unknown to the dialect, by number; each is counted once the next frame begins.
+    /// Beyond a limit, new numbers count as `u32::MAX`.
     pub unknown: BTreeMap<u32, u64>,
 }
 
@@ -227,8 +228,8 @@ impl Framer {
     fn pass_unknown(&mut self, layout: &Layout, bytes: &[u8]) -> usize {
         // A checksum includes a byte from the message's definition, so it cannot be checked for an
         // unknown message. Noise that looks like a frame start is detected by a valid frame within
-        // the stated length, or by the bytes after it. More bytes never change a decision made with
-        // fewer bytes, so the result does not depend on the split.
+        // the stated length, or by the byte after that length. More bytes never change a decision
+        // made with fewer bytes, so the result does not depend on the split.
         let inside = &bytes[..layout.len.min(bytes.len())];
         let is_noise = (1..inside.len()).any(|at| begins_with_good_frame(&inside[at..]));
         match bytes.get(layout.len) {

@@ -1,8 +1,8 @@
 //! MAVLink as used by ArduPilot's boats: converts bytes to messages and back, without ports or
 //! clocks.
 //!
-//! The messages are those of the crate `mavlink`, dialect `common`. Writes frames of version 2, and
-//! reads versions 1 and 2. Signatures are neither written nor checked.
+//! The messages are those of the crate `mavlink`, dialect `common`. This module writes frames of
+//! version 2, and reads versions 1 and 2. Signatures are neither written nor checked.
 
 mod framer;
 pub(crate) mod position;
@@ -18,7 +18,7 @@ pub use text::message_text;
 use ::mavlink::{MAV_STX_V2, MAVLinkV2MessageRaw, MavHeader, calculate_crc};
 use dialect::MavMessage;
 
-/// The component of an autopilot.
+/// The component number of an autopilot.
 pub const AUTOPILOT: u8 = 1;
 
 /// Writes the messages of one system and component.

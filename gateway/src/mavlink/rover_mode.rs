@@ -7,7 +7,7 @@ pub enum RoverMode {
     Manual,
     /// Rate of turn and speed follow the remote control.
     Acro,
-    /// Like `Acro`, without turning over.
+    /// Like `Acro`, but turns are limited so that the vehicle does not tip over.
     Steering,
     /// Thrusters idle.
     Hold,
@@ -47,7 +47,7 @@ impl RoverMode {
         }
     }
 
-    /// Whether Rover arms in this mode. Unnamed modes are assumed not to arm.
+    /// Whether Rover can be armed in this mode. Unnamed modes are assumed not to allow arming.
     pub fn allows_arming(self) -> bool {
         !matches!(
             self,

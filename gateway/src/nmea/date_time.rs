@@ -31,7 +31,7 @@ impl TimeOfDay {
         known.then_some(TimeOfDay(((hour * 60 + minute) * 60 + second) * 1000 + ms))
     }
 
-    /// The contents of the field; empty for a time beyond the end of the day.
+    /// The contents of the field; `None` for a time beyond the end of the day.
     pub(super) fn text(self) -> Option<String> {
         let ms = Some(self.0).filter(|ms| *ms < DAY_MS + 1000)?;
         // A leap second extends the last minute.
@@ -103,7 +103,7 @@ impl Date {
         .filter(|date| date.is_valid())
     }
 
-    /// The contents of the field `ddmmyy`; empty for a date that a two-digit year cannot express.
+    /// The contents of the field `ddmmyy`; `None` for a date that a two-digit year cannot express.
     pub(super) fn text(self) -> Option<String> {
         let known = self.is_valid() && (1980..2080).contains(&self.year);
         known.then(|| format!("{:02}{:02}{:02}", self.day, self.month, self.year % 100))

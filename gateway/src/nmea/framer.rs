@@ -1,12 +1,12 @@
 //! Splits incoming bytes into sentences, and counts what it discards.
 //!
-//! It keeps at most one sentence, in a buffer of fixed size, so no peer can make it grow. A `$`
-//! always starts a new sentence, so the next complete sentence is found after any noise.
+//! The framer keeps at most one sentence, in a buffer of fixed size, so no peer can exhaust memory.
+//! A `$` always starts a new sentence, so the next complete sentence is found after any noise.
 
 use super::checksum;
 use serde::{Deserialize, Serialize};
 
-/// Maximum bytes of a sentence that is accepted, including `$` and CR LF. The standard says 82, but
+/// Maximum bytes of an accepted sentence, including `$` and CR LF. The standard says 82, but
 /// receivers that send minutes with seven decimal places send GGA sentences of 88.
 pub const ACCEPTED_MAX: usize = 256;
 
@@ -15,8 +15,8 @@ const CONTENT_MAX: usize = ACCEPTED_MAX - 3;
 
 /// Counts of the input of a [`Framer`].
 ///
-/// Every `$` ever pushed is in exactly one of `sentences`, `bad_checksum`, `overlong` and `broken`,
-/// except for one in a sentence that may still be incomplete.
+/// Every `$` is counted in exactly one of `sentences`, `bad_checksum`, `overlong` and `broken`,
+/// except that of a sentence that is still incomplete.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Sentences with a valid checksum.
@@ -111,7 +111,7 @@ impl Framer {
         self.rejected = Some(Rejected { line, why });
     }
 
-    /// Handles a byte that cannot be part of a sentence: it ends an incomplete one.
+    /// Handles a byte that cannot be part of a sentence: the byte ends an incomplete sentence.
     fn stray(&mut self, byte: u8, filled: Option<usize>) {
         self.counts.garbage += 1;
         self.filled = None;

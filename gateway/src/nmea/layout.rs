@@ -68,9 +68,9 @@ pub(super) enum Field<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Format {
     pub(super) decimals: usize,
-    /// Zero-padded to this width.
+    /// Minimum width, padded with zeros.
     pub(super) width: usize,
-    /// Whether to normalise it to [0, 360).
+    /// Whether to normalise the number to [0, 360).
     pub(super) compass: bool,
     /// Whether to omit trailing zeros.
     pub(super) brief: bool,

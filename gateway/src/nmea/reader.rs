@@ -193,8 +193,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `A` (data valid) or `D` (with differential corrections); `V` or an empty field means
-    /// invalid.
+    /// Reads a validity field. `A` (data valid) and `D` (with differential corrections) mean valid;
+    /// `V` and an empty field mean invalid.
     fn valid(&mut self) -> Result<bool, ParseError> {
         match self.next() {
             "A" | "D" => Ok(true),
@@ -203,7 +203,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Rejects a field other than the unit `letter`: a different unit means a different layout.
+    /// Reads the unit `letter` or an empty field. Any other unit means a different layout, and is
+    /// rejected.
     fn unit(&mut self, letter: &'static str) -> Result<(), ParseError> {
         let text = self.next();
         if text.is_empty() || text == letter {

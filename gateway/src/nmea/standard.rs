@@ -27,8 +27,9 @@ pub struct Gga {
 }
 
 impl Gga {
-    /// 14 fields. The last one, the reference station, must be empty: the fleet's driver counts
-    /// fields after dropping one trailing empty field, and reads no position if there is a station.
+    /// 14 fields. The last one, the reference station, must be empty: a driver used with these
+    /// boats counts fields after dropping one trailing empty field, and reads no position if there
+    /// is a station.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Standard(&mut self.talker, "GGA"),
@@ -71,7 +72,8 @@ pub struct Rmc {
 }
 
 impl Rmc {
-    /// 12 fields: without magnetic variation, and with a mode of autonomous or not valid.
+    /// 12 fields: without magnetic variation, and with the mode indicator "autonomous" or "not
+    /// valid".
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let mode = fix_mode(self.valid);
         let fields = vec![

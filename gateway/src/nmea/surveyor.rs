@@ -23,8 +23,7 @@ pub struct Command {
 
 impl Command {
     /// Accepts four or more fields, because some real drivers send four and some six. In
-    /// [`Mode::Thruster`] the heading is also a whole number: some boats ignore any other number
-    /// and keep the previous value.
+    /// [`Mode::Thruster`], the heading is also a whole number.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         // In a download without following lines, the three unused fields are zero.
         let zeros = |number: &Option<f64>| Format {
@@ -42,7 +41,7 @@ impl Command {
                 zeros(&self.thrust),
                 zeros(&self.difference),
             ),
-            // Mode T uses whole numbers: one stand-in for the boat reads integers, and keeps the
+            // Mode T uses whole numbers: one simulator of the boat reads integers, and keeps the
             // previous difference if the new one has decimal places.
             Mode::Thruster => (
                 Format {
@@ -93,8 +92,8 @@ impl Command {
 /// Rounds thrust and difference to whole percentages, halves away from zero; leaves a speed in
 /// knots unchanged.
 ///
-/// A thruster receives their sum. If rounding would take it above 100, the difference is reduced,
-/// and the boat turns a little less.
+/// A thruster receives their sum. If rounding would take the sum above 100, the difference is
+/// reduced, and the boat turns a little less.
 fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
     let sum =
         |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
@@ -131,9 +130,9 @@ pub struct Attitude {
     pub box_c: Option<f64>,
     /// Forward acceleration, in units of gravity.
     pub accel_ahead_g: Option<f64>,
-    /// Acceleration to starboard.
+    /// Acceleration to starboard, in units of gravity.
     pub accel_starboard_g: Option<f64>,
-    /// Acceleration down: -1 at rest.
+    /// Acceleration down, in units of gravity: -1 at rest.
     pub accel_down_g: Option<f64>,
     /// Rate of turn, degrees a second.
     pub yaw_rate_deg_s: Option<f64>,
@@ -205,8 +204,8 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// 15 fields: real drivers reject any other number of fields. The two fuel gauges after the
-    /// 15th are ignored.
+    /// Writes 15 fields, because real drivers reject any other number. When reading, the two fuel
+    /// gauges after the 15th field are ignored.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
             Field::Address("PSEAB"),
@@ -333,7 +332,7 @@ impl MissionSettings {
         }
     }
 
-    /// The settings as written: a whole percentage.
+    /// The settings as written: the throttle is a whole percentage.
     pub(super) fn rounded(self) -> MissionSettings {
         MissionSettings {
             throttle_pct: self.throttle_pct.round(),

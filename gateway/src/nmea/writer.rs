@@ -7,7 +7,7 @@ use super::{EMITTED_MAX, with_checksum};
 use primitives::LatLon;
 use std::ops::Range;
 
-/// `$`, `*`, two digits, CR and LF.
+/// Number of bytes around the body: `$`, `*`, two digits, CR and LF.
 const FRAME: usize = 6;
 
 /// A sentence being written.

@@ -1,5 +1,5 @@
-//! The gateway's monotonic clock, which keeps running while the machine is suspended. In a game
-//! faster than real time, it runs at the game's pace.
+//! The gateway's monotonic clock, which keeps running while the machine is suspended. For an
+//! emulated boat, it can run at the game's pace.
 
 use bus::clock;
 use primitives::SimTime;
@@ -24,7 +24,7 @@ impl Moment {
         }
     }
 
-    /// The time from this moment to `now`, and for how much of it the machine was suspended, if it
+    /// The time from this moment to `now`, and how long the machine was suspended in between, if it
     /// was.
     pub(super) fn gap(self, now: Moment) -> (Duration, Option<Duration>) {
         // Linux's monotonic clock stops during sleep. The time asleep is added, so that old data

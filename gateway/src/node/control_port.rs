@@ -233,7 +233,7 @@ impl Server {
         } else {
             "no link to the boat yet"
         };
-        let link = "no link yet: looking for the game".to_owned();
+        let link = "no link yet: the gateway is starting".to_owned();
         GatewayStatus {
             vehicle: self.vehicle.clone(),
             link,
@@ -333,7 +333,7 @@ mod tests {
             game: None,
             command,
         };
-        // Before its loop runs, the gateway obeys but has nothing to report.
+        // Before its loop runs, the gateway obeys the stop but has no state to report.
         socket
             .send(&request(boat(OperatorCommand::EStop)).encode())
             .expect("it is sent");

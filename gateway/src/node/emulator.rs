@@ -72,7 +72,7 @@ pub enum FrontSeatSettings {
     },
     /// ArduPilot's own firmware, as *software in the loop*.
     Sitl {
-        /// Where the firmware requests its boat's motion, by UDP.
+        /// The UDP address at which the firmware requests its boat's motion.
         listen: SocketAddr,
         /// The servo outputs for the thrusters.
         servos: Servos,

@@ -1,5 +1,5 @@
-//! Finds a boat's game and joins it on its own thread, so that the boat's link and its operators do
-//! not have to wait.
+//! Finds a boat's game and joins it on a separate thread, so that the boat's link and its operators
+//! do not have to wait.
 
 use super::error::NodeError;
 use super::game_terms::{declination_rad, external_vehicle, pace_factor};

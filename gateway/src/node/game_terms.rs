@@ -1,5 +1,5 @@
-//! The conditions under which a boat takes part in a game: that it is a real boat, the pace, and
-//! the declination at the field.
+//! The conditions under which a boat takes part in a game: it must be external, the pace must suit
+//! it, and the declination at the field must be known.
 
 use super::error::NodeError;
 use crate::declination::declination_deg;
@@ -10,7 +10,7 @@ use primitives::frame::LatLon;
 use recording::utc;
 use scenario::Source;
 
-/// The vehicle with this name, which must be a real boat in this game.
+/// The vehicle with this name, which must be external in this game.
 pub(super) fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {
     let vehicle = info.scenario.vehicle_named(name)?;
     if info.scenario.vehicles[vehicle.index()].source == Source::External {

@@ -127,8 +127,8 @@ impl GatewayLoop<'_> {
             beat_at = self.beat(beat_at)?;
             let stop_count = self.input.stop_count();
             self.take_requests()?;
-            // Use the count from before the stops were taken: a published state covers all stops up
-            // to this count, and no later ones.
+            // Use the count from before the stops were taken, so that the published state covers at
+            // least the stops up to this count.
             self.input
                 .show_state(stop_count, self.bridge.state_in_words());
             let due = self.bridge.due(self.clock.now());
@@ -170,7 +170,8 @@ impl GatewayLoop<'_> {
     }
 
     /// Sends the guard a heartbeat, and reports to the core any pause long enough for the guard to
-    /// have stopped the boat. Discards input from before a suspension of the machine.
+    /// have stopped the boat. After a suspension of the machine, input from before it counts as
+    /// outdated.
     fn beat(&mut self, last: Moment) -> Result<Moment, NodeError> {
         let now = Moment::now();
         let (gap, suspended) = last.gap(now);
@@ -338,7 +339,7 @@ impl GatewayLoop<'_> {
                 // Not an error: stale orders stop the boat, and the gateway joins the game's next
                 // sim in the same way.
                 self.counters.ticket = None;
-                self.remark("lost the sim; waiting for the next");
+                self.remark("lost the sim; waiting for the next one");
             }
             Call::Remark(text) => self.remark(&text),
         }
@@ -475,7 +476,6 @@ impl GatewayLoop<'_> {
         let now = self.clock.now();
         let mut out = Output::default();
         self.bridge.process(now, &input, &mut out);
-        // The boat comes first.
         if !out.bytes.is_empty() {
             self.counters.tag += 1;
             if let (true, Some(came)) = (out.carries_order, self.counters.order_came.take()) {
@@ -561,8 +561,8 @@ impl Drop for GatewayLoop<'_> {
         // Three times, because links lose messages.
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
-        // End the guard only after the message: until then, it must stop the boat if this process
-        // hangs.
+        // End the guard only after the message: until then, the guard must stop the boat if this
+        // process hangs.
         self.guarded.iter().for_each(Guarded::end);
     }
 }

@@ -29,7 +29,7 @@ pub(super) const HEARTBEAT: Duration = Duration::from_millis(100);
 /// Time without a heartbeat after which the gateway is treated as hung.
 const SILENCE: Duration = Duration::from_millis(400);
 /// Time without a heartbeat after which the loop itself assumes that the guard has stopped the
-/// boat: shorter, so that the loop never misses such a stop.
+/// boat: shorter than [`SILENCE`], so that the loop never misses such a stop.
 pub(super) const HUNG: Duration = Duration::from_millis(350);
 /// Interval at which the guard repeats standby while the gateway hangs and after it has died.
 const AGAIN: Duration = Duration::from_millis(100);
@@ -37,7 +37,7 @@ const LAST_WORDS: usize = 4;
 /// Maximum time to write one sentence.
 const WRITE_MAX: Duration = Duration::from_millis(50);
 
-/// Messages to the guard: one byte each. The stop message follows its byte.
+/// Messages to the guard: one byte each. The stop message follows the byte `STOP`.
 const ALIVE: u8 = b'.';
 const LINK: u8 = b'+';
 const NO_LINK: u8 = b'-';
@@ -87,7 +87,8 @@ impl Guarded {
         Ok(guarded)
     }
 
-    /// Reports that the loop is running; returns the guard's failure the first time it is noticed.
+    /// Reports that the loop is running. Returns `false` the first time that the guard is found to
+    /// be dead.
     pub(super) fn beat(&self) -> bool {
         self.send(&[ALIVE], None) || self.0.is_gone.swap(true, Ordering::Relaxed)
     }
@@ -100,7 +101,7 @@ impl Guarded {
         }
     }
 
-    /// Passes on a new link, or the loss of the link.
+    /// Passes a new link to the guard, or tells it that the link is lost.
     pub(super) fn link(&self, descriptor: Option<BorrowedFd<'_>>) {
         self.send(
             &[if descriptor.is_some() { LINK } else { NO_LINK }],
@@ -113,8 +114,8 @@ impl Guarded {
         self.send(&[ENDS], None);
     }
 
-    /// Returns whether the guard still exists. A message to a suspended guard may be lost, once its
-    /// queue is full.
+    /// Sends a message. Returns whether the guard still exists. A message to a suspended guard is
+    /// lost once its queue is full.
     fn send(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];

@@ -190,7 +190,7 @@ impl LoopOutput {
         self.back.found.lock().take()
     }
 
-    /// Takes the stop to execute, if any.
+    /// Takes a stop of this kind. Returns whether one was waiting.
     pub(super) fn take_stop(&self, stop: Stop) -> bool {
         self.back.stops.of(stop).swap(false, Ordering::SeqCst)
     }

@@ -73,8 +73,8 @@ pub struct Outside {
 pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 
 /// Connects a real boat to a game until it is stopped. It first opens the link and sends the boat
-/// standby, then searches for the game while serving operators. However it ends, it sends the boat
-/// standby.
+/// standby, then searches for the game while serving operators. However the gateway ends, it sends
+/// the boat standby.
 ///
 /// # Errors
 /// [`NodeError`] if another gateway on this machine holds the link, if the game refuses the boat,

@@ -30,7 +30,8 @@ struct Server {
 }
 
 impl TcpPort {
-    /// Opens a port for this many connections; a new connection displaces the one idle for longest.
+    /// Opens a port for this many connections. If all are in use, a new connection displaces the
+    /// one that has been idle for longest.
     pub(super) fn open(
         listen: SocketAddr,
         name: &str,
@@ -78,7 +79,7 @@ impl Server {
             match listener.accept() {
                 Ok((stream, from)) => self.open(stream, from.ip()),
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-                // For example, too many open files, which may be temporary.
+                // The cause may be temporary, for example too many open files.
                 Err(_) => clock::rest(POLL),
             }
         }

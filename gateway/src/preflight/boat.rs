@@ -13,7 +13,7 @@ use rules::Field;
 /// Maximum scatter of the fixes of a boat at rest, m: the radius around their mean that contains 95
 /// of 100 fixes, and the drift of that mean.
 const SCATTER_MAX_M: f64 = 2.5;
-/// How long fixes are collected, s.
+/// Minimum time over which fixes are collected, s.
 const SCATTER_S: f64 = 25.0;
 /// The water on which the boat will drive.
 pub struct Water {
@@ -23,7 +23,7 @@ pub struct Water {
     pub area: GeofenceArea,
 }
 
-/// The checks of the data that a boat has sent so far, by the host's clock.
+/// Checks the data that a boat has sent so far. Its times are compared with the host's clock.
 pub fn boat_checks(
     seen: &SensorCheck,
     host: HostTime,
@@ -52,7 +52,7 @@ pub fn boat_checks(
 
 fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
     let Some(fix) = seen.fix else {
-        return Check::not_done("fix", "no fix with a quality was received");
+        return Check::not_done("fix", "received no fix that states its quality");
     };
     let nav = &gateway.nav;
     let satellites = fix
@@ -187,7 +187,7 @@ fn battery(seen: &SensorCheck, gateway: &Gateway) -> Check {
             volts >= least,
             format!("{volts:.1} V, expected {least} or more"),
         ),
-        None => Check::not_done("battery", "the boat does not report it"),
+        None => Check::not_done("battery", "the boat does not report its battery"),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The interface that all protocols share: their commands, and their end of a link.
+//! The interface that all protocols share: commands to boats, and the gateway's end of a link.
 
 use super::report::{Report, Shown};
 use crate::config::SwitchWord;

@@ -32,7 +32,8 @@ use primitives::{SimTime, math};
 const HEARTBEAT_S: f64 = 1.0;
 /// Time (s) after which a mode or arming that the boat does not report is requested again.
 const AGAIN_S: f64 = 0.5;
-/// Minimum speed of a velocity that is sent, m/s: below it the direction would be a rounding error.
+/// Minimum speed of a velocity that is sent, m/s: below this, the direction would be a rounding
+/// error.
 const VELOCITY_MIN_M_S: f64 = 0.01;
 /// The messages that we need from the boat: number and rate, 1/s.
 const STREAMS: [(u32, f64); 10] = [
@@ -68,7 +69,7 @@ pub struct Mavlink {
     heartbeat_due: SimTime,
     streams_due: SimTime,
     upload: Option<Upload>,
-    /// The boat's pending request.
+    /// Replies to the boat's requests that are still to be sent.
     answers: Vec<MavMessage>,
 }
 
@@ -164,7 +165,7 @@ impl Mavlink {
         if before.is_some_and(|asked| asked.is_shown) && !is_driven {
             return;
         }
-        // The mode of a task that we requested stays ours until the boat has left it.
+        // The mode of a task that we requested counts as ours until the boat has left it.
         if shown.mode == RoverMode::Hold && !shown.is_armed {
             self.asked = Some(Asked {
                 is_shown: true,
@@ -227,7 +228,7 @@ impl Mavlink {
             AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
                 | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE;
         let message = match set_point {
-            // Thrust is a fraction of the boat's cruise speed, positive ahead; the rate of turn is
+            // `thrust` is a fraction of the boat's cruise speed, positive ahead; `body_yaw_rate` is
             // positive to starboard.
             SetPoint::Thrust {
                 thrust_pct,
@@ -505,11 +506,11 @@ impl Codec for Mavlink {
 fn mode_of(task: Task) -> (RoverMode, Mode, &'static str) {
     match task {
         Task::StationKeep => (RoverMode::Loiter, Mode::StationKeep, "LOITER"),
-        // The closest equivalent on an ArduPilot boat: it returns to where it was armed, or to its
-        // rally point.
+        // The closest equivalent on an ArduPilot boat: the boat returns to its home or to a rally
+        // point.
         Task::GoToErp => (RoverMode::Rtl, Mode::GoToErp, "RTL"),
         Task::Mission => (RoverMode::Auto, Mode::Waypoint, "AUTO"),
-        // Refused earlier.
+        // Such tasks are refused earlier.
         Task::Mode(_) => (RoverMode::Hold, Mode::Standby, "HOLD"),
     }
 }

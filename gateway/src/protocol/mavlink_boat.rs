@@ -63,7 +63,7 @@ pub(super) struct Boat {
     /// The boat's system number, once known.
     pub(super) system: Option<u8>,
     pub(super) mode: Option<ShownMode>,
-    /// Messages from other systems and components.
+    /// Number of messages from other systems and components.
     pub(super) others: u64,
     /// The receiver's report of its fix, and when it arrived.
     fix: Option<(SimTime, Fix)>,
@@ -188,7 +188,7 @@ impl Boat {
         self.mode = Some(shown);
         let is_ours = self.is_ours(asked.as_ref());
         if !is_ours {
-            // Another operator took the boat: our earlier request must not count if the boat
+            // Another operator took over the boat: our earlier request must not count if the boat
             // happens to enter that mode later.
             *asked = None;
         }
@@ -197,7 +197,7 @@ impl Boat {
         }
         let is_fresh = |at: SimTime| (now - at).as_s() <= TARGET_AGE_MAX_S;
         let mode = match shown.mode {
-            // In any mode, since a boat that is not armed does not move.
+            // Whatever the mode, a boat that is not armed does not move.
             _ if is_ours && !is_armed => Mode::Standby,
             RoverMode::Hold => Mode::Standby,
             // We never send the boat a position.

@@ -85,7 +85,7 @@ pub enum North {
 /// A boat's mode, and who commands it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlReport {
-    /// The command that the boat follows, as it reports.
+    /// The command that the boat follows, according to its report.
     pub shown: Shown,
     /// Who commands the boat, if reported.
     pub operator: Option<Operator>,

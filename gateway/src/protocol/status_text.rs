@@ -62,7 +62,7 @@ impl StatusTexts {
         }
         text.text.extend(&letters);
         (text.at, text.next_chunk) = (now, status.chunk_seq.saturating_add(1));
-        // The last chunk is the one that is not full.
+        // A chunk that is not full is the last one.
         if letters.len() < capacity {
             return say(in_words(&text.text));
         }
@@ -101,7 +101,7 @@ mod tests {
 
     const LONG: &str = "PreArm: Compass not calibrated and the accelerometers are inconsistent at 12° and 50°, please wait a while";
 
-    /// The messages shown for these chunks, which arrive 0.1 s apart, and 2 s after the last.
+    /// The messages shown while these chunks arrive, 0.1 s apart, and 2 s after the last one.
     fn said(chunks: &[(u16, u8, &[u8])]) -> Vec<String> {
         let mut texts = StatusTexts::default();
         let mut said = vec![];

@@ -57,7 +57,7 @@ impl HostTime {
     }
 }
 
-/// The sentences or messages with one name.
+/// The received sentences or messages with the same name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Received {
     /// The number received.
@@ -77,7 +77,7 @@ impl Received {
     pub fn rate_hz(&self) -> Option<f64> {
         let (first, last) = self.between?;
         let span_s = (last - first).as_s();
-        // Counts intervals, not messages: two messages within a second are one interval.
+        // Count intervals, not messages: there is one interval between two messages.
         (span_s > 0.0).then(|| (self.count - 1) as f64 / span_s)
     }
 
@@ -231,7 +231,8 @@ impl SensorCheck {
             }
         });
         if days != 0 {
-            // A receiver counts weeks modulo 1024: after a rollover it is wrong by this much.
+            // A receiver counts weeks modulo 1024: after a rollover, its date is wrong by this
+            // much.
             let rollover = if days >= GPS_WEEKS_DAYS {
                 ", as after a GPS week rollover (7168 days)"
             } else {
@@ -320,7 +321,7 @@ impl SensorCheck {
         })
     }
 
-    /// The data missing to drive the boat.
+    /// Descriptions of the data that is missing for driving the boat.
     pub fn missing(&self) -> Vec<String> {
         let mut missing = self.unmet();
         if let Some(operator) = self.control.as_ref().and_then(|control| control.operator)

@@ -42,8 +42,8 @@ const fn need(
     }
 }
 
-const FOR_A_FIX: &str = "without a fix it cannot be driven";
-const FOR_A_HEADING: &str = "without a heading it cannot be driven";
+const FOR_A_FIX: &str = "the boat cannot be driven without a fix";
+const FOR_A_HEADING: &str = "the boat cannot be driven without a heading";
 const FOR_ITS_BATTERY: &str = "its battery would not be monitored";
 const UNKNOWN_CONTROL: &str =
     "it is unknown who commands the boat, so it can be armed only with control.assumed = true";
@@ -75,7 +75,7 @@ const MAVLINK_NEEDS: [Need; 5] = [
         Usable::Quality,
         "a fix",
         &["GPS_RAW_INT"],
-        "without the quality of its fix it cannot be driven",
+        "the boat cannot be driven without a fix quality",
     ),
     need(
         Usable::Heading,
@@ -144,7 +144,7 @@ impl SensorCheck {
             (None, _) => format!("{names}: {without}"),
             (_, Some(why)) if !self.usable.contains_key(usable) => format!("{what}: {why}"),
             (Some((name, _)), _) if !self.usable.contains_key(usable) => {
-                format!("{what}: {name} comes without it: {without}")
+                format!("{what}: missing in {name}; {without}")
             }
             _ => {
                 format!("{names} bring new data only {rate_hz:.2} times a second: {without}")

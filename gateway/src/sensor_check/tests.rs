@@ -83,7 +83,7 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
         ),
         (
             "GPGGA,150503.00,0000.00000,N,00000.00000,E,1,12,0.9,1,M,1,M,,",
-            "a position: GPGGA comes without it",
+            "a position: missing in GPGGA",
         ),
         // The receiver's time does not advance.
         (
@@ -92,16 +92,16 @@ fn what_came_but_cannot_be_used_is_missing_with_the_reason() {
         ),
         (
             "PSEAA,-2.2,0.7,,,47.8,-0.04,-0.01,-1.00,-0.01",
-            "a heading: PSEAA comes without it",
+            "a heading: missing in PSEAA",
         ),
         (
             "PSEAA,-2.2,0.7,400,,47.8,-0.04,-0.01,-1.00,-0.01",
-            "a heading: PSEAA comes without it",
+            "a heading: missing in PSEAA",
         ),
-        ("GPVTG,,T,,M,,N,,K", "a velocity: GPVTG comes without it"),
+        ("GPVTG,,T,,M,,N,,K", "a velocity: missing in GPVTG"),
         (
             "PSEAB,,98,1.2,24.0,10,,,26.4,26.4,1.0,0.1,0.1,0.0,0.0,12",
-            "a voltage: PSEAB comes without it",
+            "a voltage: missing in PSEAB",
         ),
     ] {
         let missing = checked(&with_checksum(body), 10.0).missing().join("\n");

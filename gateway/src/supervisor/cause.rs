@@ -29,7 +29,7 @@ pub enum Cause {
     Control(ControlFault),
     /// The boat has no known recovery point.
     #[error(
-        "no recovery point inside the geofence that this gateway uploaded and the boat confirmed"
+        "no recovery point inside the geofence, uploaded by this gateway and confirmed by the boat"
     )]
     NoRecoveryPoint,
     /// The gateway was not running for this time (s), and its guard may have stopped the boat.
@@ -43,13 +43,13 @@ pub enum Cause {
 /// Why this gateway does not command the boat, according to the boat's own reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ControlFault {
-    /// Another operator took over: PSEAD's operator number.
+    /// Another operator took over. This is the operator number in PSEAD.
     #[error("{} has taken over", operator(*.0))]
     TakenOver(u8),
     /// The boat no longer reported who commands it.
     #[error("the boat no longer reports who commands it")]
     Unknown,
-    /// The boat did not enter the mode sent; it reported this one.
+    /// The boat did not enter the mode that was sent, but reported this one.
     #[error("the boat does not follow its commands: it is in mode {0}")]
     Disobeyed(char),
     /// The boat still echoes an outdated command: it transmits but does not listen.
@@ -97,7 +97,7 @@ pub enum NavFault {
     #[error("the compass reading did not change while the course changed by {0:.0} degrees")]
     CompassFrozen(f64),
     /// Deviation of the compass from the course over ground on several headings, degrees.
-    #[error("the compass is off by {:.0} degrees, judged by the course over the ground", .0.abs())]
+    #[error("the compass is off by {:.0} degrees, compared with the course over the ground", .0.abs())]
     CompassOff(f64),
     /// The reported speed is below the speed computed from positions (m/s).
     #[error("the reported speed is lower than the speed implied by the positions, {0:.1} m/s")]
@@ -126,7 +126,7 @@ impl Cause {
         }
     }
 
-    /// The condition that is missing for arming, as a string.
+    /// The condition that is missing for arming, as text for operators.
     pub(crate) fn missing(self) -> String {
         match self {
             Cause::Hung(_) => "a gateway that does not hang".to_owned(),
@@ -136,7 +136,7 @@ impl Cause {
             }
             Cause::Control(ControlFault::ForeignOrders) => "a boat that receives orders only from us".to_owned(),
             Cause::NoRecoveryPoint => {
-                "a recovery point inside the geofence that this gateway uploaded and the boat accepted (mission)"
+                "a recovery point inside the geofence, uploaded by this gateway and confirmed by the boat (mission)"
                     .to_owned()
             }
             Cause::Control(ControlFault::Unknown | ControlFault::Disobeyed(_) | ControlFault::Deaf) => {
@@ -151,7 +151,7 @@ impl Cause {
     }
 }
 
-/// The name for PSEAD's operator number.
+/// The name for an operator number in PSEAD.
 fn operator(number: u8) -> String {
     match number {
         1 => "the primary operator".to_owned(),

@@ -18,13 +18,13 @@
 //!     └──────────┘
 //! ```
 //!
-//! *Ready* means: link up, control granted, navigation reliable, inside the geofence, battery not
-//! low, order fresh. *Fit* is the same without the order. We send set-points that move the boat
-//! only in `Armed`, and only if it is ready in that same step and no other boat is in the way.
-//! After a failsafe the boat stops, unless the gateway file assigns a task of the boat's own
-//! controller to that cause and nothing that the task needs has failed. The state machine has no
-//! clock: `Conditions` state what is fresh, reliable or granted now, so that a test can try every
-//! state with every input.
+//! *Ready* means: link up, loop not hung, control granted, navigation reliable, thrust effective,
+//! inside the geofence, battery not low, order fresh. *Fit* is the same without the order. We send
+//! set-points that move the boat only in `Armed`, and only if it is ready in that same step and no
+//! other boat is in the way. After a failsafe the boat stops, unless the gateway file assigns a
+//! task of the boat's own controller to that cause and nothing that the task needs has failed. The
+//! state machine has no clock: `Conditions` state what is fresh, reliable or granted now, so that a
+//! test can try every state with every input.
 
 mod cause;
 
@@ -113,7 +113,7 @@ pub enum Task {
     GoToErp,
     /// Run the uploaded mission.
     Mission,
-    /// Run a different mode of the boat.
+    /// Run another mode of the boat's own controller.
     Mode(BoatMode),
 }
 
@@ -201,7 +201,7 @@ impl Supervisor {
         self.state
     }
 
-    /// The E-stops in force, as a string.
+    /// The scopes of the E-stops in force, as text for operators.
     pub(crate) fn stopped_by(&self) -> &'static str {
         match self.stops {
             [true, true] => "this boat and of the fleet",
@@ -271,7 +271,7 @@ impl Supervisor {
     fn check_failsafes(&mut self, now: &Conditions) {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
-            // After release the boat is disarmed, whatever its state before: an operator must arm
+            // After release, the boat is disarmed, whatever its state before: an operator must arm
             // it.
             State::EStopped => State::Disarmed,
             State::Armed => now
@@ -370,7 +370,7 @@ impl Conditions {
             .or(self.missing_for(task))
     }
 
-    /// The condition that makes a task impossible after any failsafe, if any.
+    /// The condition that makes a task impossible after a failsafe, if any.
     fn hindrance(&self, task: Task) -> Option<Cause> {
         self.causes()
             .find(|cause| !cause.leaves_control())

@@ -24,7 +24,7 @@ pub(crate) struct Rig {
     pub(crate) boat_order: Order,
     pub(crate) bridge: Bridge,
     pub(crate) oracle: Oracle,
-    /// Whether bytes pass to the boat and from it.
+    /// Whether bytes pass to the boat, and whether they pass from it.
     pub(crate) open: (bool, bool),
     pub(crate) tamper: Option<Tamper>,
     /// The agent's order, ten times a second; `None` without an agent.

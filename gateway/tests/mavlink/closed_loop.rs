@@ -76,7 +76,7 @@ fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
     }
 }
 
-/// A boat that was at rest and has been armed, with this order, for 20 s.
+/// A boat that was at rest, was armed, and has followed this order for 20 s.
 fn ordered(drive: Drive, order: Order) -> Rig {
     let mut plan = plan();
     plan.gateway.drive = drive;

@@ -23,7 +23,7 @@ fn steer(heading_deg: f64) -> Order {
     }
 }
 
-/// The message of a boat before version 4.7.
+/// The messages of a boat with firmware before version 4.7.
 fn without_bearing(message: MavMessage) -> Option<MavMessage> {
     Some(match message {
         MavMessage::NAV_CONTROLLER_OUTPUT(shown) => MavMessage::NAV_CONTROLLER_OUTPUT(

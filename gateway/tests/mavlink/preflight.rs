@@ -179,7 +179,7 @@ fn a_vehicle_that_is_no_boat_is_named_and_a_heading_that_is_unknown_is_missing()
     (10..20).for_each(|s| send(&mut seen, boat.clone(), s));
     let missing = seen.missing().join("\n");
     assert!(
-        missing.contains("a heading: GLOBAL_POSITION_INT comes without it"),
+        missing.contains("a heading: missing in GLOBAL_POSITION_INT"),
         "{missing}"
     );
 }

@@ -73,7 +73,7 @@ pub(crate) fn e7(place: Ned) -> (i32, i32) {
     )
 }
 
-/// A message as this component sends it.
+/// The frame in which this component sends a message.
 pub(crate) fn frame(system: u8, component: u8, message: &MavMessage) -> Vec<u8> {
     let mut bytes = vec![];
     Writer::new(system, component).write(message, &mut bytes);

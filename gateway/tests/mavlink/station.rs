@@ -68,7 +68,7 @@ impl Station {
         self.ardupilot.receive(self.now, &bytes);
     }
 
-    /// Sends a message; returns the messages that arrive within the second in which a reply is due.
+    /// Sends a message; returns the messages that arrive within 0.9 s.
     pub(crate) fn reply(&mut self, message: &MavMessage) -> Vec<MavMessage> {
         self.send(message);
         self.run(0.9)
@@ -158,7 +158,7 @@ impl Station {
             .map(|(_, result)| *result)
     }
 
-    /// The messages within 0.9 s of a message outside the dialect.
+    /// The messages received within 0.9 s after sending a message outside the dialect.
     pub(crate) fn reply_to_bytes(
         &mut self,
         id: u32,

@@ -5,8 +5,8 @@ use crate::bodies;
 use crate::sentences::values;
 use gateway::nmea::{BoatError, Command, Mode, Sentence};
 
-/// The meaning of a sentence: its kind and the fields with a value. Minutes are not a round
-/// fraction of a degree, so numbers have ten digits.
+/// The meaning of a sentence: its kind and the fields with a value. Degrees converted from minutes
+/// are not round numbers, so numbers are rounded to ten decimal places.
 fn meaning(sentence: &Sentence) -> String {
     let mut words = Vec::<String>::new();
     let mut last = String::new();

@@ -1,4 +1,5 @@
-//! The database: registration, types, clients that leave, and what each client receives.
+//! Tests of the database: registration, types, clients that leave, and the messages that each
+//! client receives.
 
 use super::*;
 use crate::mail::MAIL_MAX;
@@ -10,7 +11,7 @@ fn notify(key: &str, number: f64) -> Msg {
     Msg::number(Kind::NOTIFY, key, number, -1.0)
 }
 
-/// A database with a client of each of these names, and their mail.
+/// A database with one client for each of these names, and the clients' mail.
 fn database(names: &[&str]) -> (Database, Vec<Arc<Watched<Mail>>>) {
     let mut database = Database::new(
         "blue_one",

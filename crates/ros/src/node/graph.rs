@@ -26,7 +26,7 @@ pub(super) struct Topic<M> {
 }
 
 impl Graph {
-    /// Connects to the router at this endpoint, or acts as the router.
+    /// Connects to the router at this endpoint, or acts as the router if none is running there.
     pub(super) fn open(router: &str, domain: u32) -> Result<Graph, BusError> {
         Ok(Graph {
             session: RosSession::open(router)?,

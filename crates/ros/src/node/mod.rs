@@ -1,8 +1,9 @@
-//! The bridge on both networks: finds a game, publishes it to ROS 2, and drives boats as requested
-//! from ROS 2.
+//! The bridge between the two networks: finds a game, publishes it to ROS 2, and drives boats as
+//! requested from ROS 2.
 //!
-//! Observing and driving have separate sessions with the sim, and ROS 2 has a third. Only the
-//! newest frame and picture are kept: a slow ROS network loses messages but delays nothing.
+//! Observing and driving use separate sessions on the game's network; ROS 2 uses a third. Only the
+//! newest frame and the newest picture of each team are kept: a slow ROS network loses messages but
+//! does not delay the game.
 
 mod driver;
 mod graph;
@@ -34,7 +35,8 @@ use thiserror::Error;
 
 /// Interval at which an idle bridge checks whether the game is still running.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// Absence of the sim after which the game counts as over. A paused game sends no frames.
+/// Absence of the sim's token after which the sim counts as lost. A lack of frames proves nothing,
+/// because a paused game sends none.
 const MISSING_MAX: Duration = Duration::from_secs(5);
 /// How long an agent without pictures waits for the sim.
 const SILENCE: Duration = Duration::from_secs(60);
@@ -43,7 +45,7 @@ const SILENCE: Duration = Duration::from_secs(60);
 pub struct Settings {
     /// The game to show. `None`: the only one available.
     pub game: Option<GameName>,
-    /// The place of the sim.
+    /// The location of the sim.
     pub place: Place,
     /// The endpoint of the ROS 2 router.
     pub router: String,
@@ -55,7 +57,7 @@ pub struct Settings {
     pub ttl: SimTime,
     /// Whether the truth is published.
     pub shows_truth: bool,
-    /// Whether ROS 2 may pause, resume, step and end the game, and release stops.
+    /// Whether ROS 2 may send all operator commands; otherwise it may only stop boats.
     pub is_operator: bool,
     /// Maximum time to search for the sim and to wait for free boats.
     pub wait: Duration,
@@ -63,14 +65,14 @@ pub struct Settings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// Reports of a bridge to the program that runs it.
+/// Reports from a bridge to the program that runs it.
 pub enum News<'a> {
     /// The ROS network is available.
     OnRos {
         /// Whether this process is acting as its router.
         is_router: bool,
     },
-    /// No sim or no free boat found yet.
+    /// The bridge has not yet found a sim or a free boat.
     Looking {
         /// Why the bridge is waiting.
         reason: &'a str,
@@ -87,24 +89,24 @@ pub enum News<'a> {
     },
 }
 
-/// Why a bridge ended early.
+/// Why a bridge failed.
 #[derive(Debug, Error)]
 pub enum RosError {
     /// A network failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// No game found.
+    /// No game was found.
     #[error(transparent)]
     NotFound(#[from] NotFound),
-    /// The agent of the driven boats ended.
+    /// The agent of the driven boats failed.
     #[error(transparent)]
     Agent(#[from] NodeError),
     /// The game has no such boat.
     #[error(transparent)]
     Vehicle(#[from] UnknownVehicle),
-    /// A name that ROS 2 does not accept.
+    /// ROS 2 does not accept the name of a boat or team.
     #[error(
-        "{0:?} cannot be part of a ROS 2 topic: rename it with letters, digits and single _, beginning with a letter"
+        "{0:?} cannot be part of a ROS 2 topic: names of boats and teams must consist of letters, digits and single underscores, and start with a letter"
     )]
     Name(String),
     /// The sim is lost.
@@ -123,7 +125,7 @@ enum Incoming {
 /// State shared by the threads of a bridge.
 #[derive(Clone)]
 struct Shared {
-    /// The newest frame, then the newest picture of each team.
+    /// The newest frame in slot 0, then the newest picture of each team.
     incoming: Arc<Latest<Incoming>>,
     statuses: Arc<Statuses>,
     refusals: Arc<Watched<Refusals>>,
@@ -360,8 +362,8 @@ impl Bridge {
         if let Some(reason) = self.shared.agent_news.visit(Option::take) {
             tell(News::Looking { reason: &reason });
         }
-        // Refusals are reported at each power of ten, not for each message: otherwise a hostile
-        // node could fill the terminal.
+        // Refusals are reported when their number has grown tenfold, not for each message:
+        // otherwise a hostile node could fill the terminal.
         if refused.total() > self.told.total().saturating_mul(10) {
             self.told = refused;
             tell(News::Refused { refused });

@@ -19,7 +19,7 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Interval at which diagnostics and the field are sent.
+/// Interval at which diagnostics and field markers are sent.
 const SELDOM: Duration = Duration::from_secs(1);
 
 /// The newest status of each gateway and its time of arrival, by boat.
@@ -80,8 +80,8 @@ pub(super) struct Publisher {
 }
 
 impl Publisher {
-    /// Declares all topics: `nodes` are the boats' nodes by vehicle, `driven` the boats that the
-    /// bridge drives.
+    /// Declares all topics: `nodes` are the boats' nodes, by vehicle; `driven` are the boats that
+    /// the bridge drives.
     pub(super) fn open(
         graph: &mut Graph,
         (squall, nodes): (&Node, &[Node]),
@@ -182,7 +182,7 @@ impl Publisher {
             .map_or(Ok(()), |topic| topic.send(|| picture.clone()))
     }
 
-    /// Sends diagnostics and the field, once a second.
+    /// Sends diagnostics and field markers, once a second.
     pub(super) fn send_seldom(
         &mut self,
         statuses: &Statuses,

@@ -21,7 +21,7 @@ const SET_BOOL: &str = "std_srvs/srv/SetBool";
 const TRIGGER: &str = "std_srvs/srv/Trigger";
 const RESET: &str = "squall_msgs/srv/Reset";
 /// The services: name, type, and the commands for `true` and `false`. Types without a flag use only
-/// the first.
+/// the first command.
 const SERVICES: [(&str, &str, [Control; 2]); 6] = [
     (
         "/squall/e_stop",
@@ -39,7 +39,8 @@ const SERVICES: [(&str, &str, [Control; 2]); 6] = [
     ),
 ];
 
-/// The command in a request to a service of this type with these commands.
+/// The command in a request to a service with this type and these commands; `None` if the request
+/// is malformed.
 fn command(type_name: &str, [on, off]: [Control; 2], request: &[u8]) -> Option<Control> {
     if type_name == RESET {
         return codec::decode_plain(request).map(Control::Reset);
@@ -148,7 +149,7 @@ impl Operator {
     fn command(&self, control: Control) -> Result<(), String> {
         if !control.stops() && !self.may_all {
             return Err(
-                "the bridge only stops boats: start it with --operator for this command".to_owned(),
+                "the bridge accepts only stop commands; start it with --operator to allow all commands".to_owned(),
             );
         }
         bus::control(&self.bus, &self.game, control).map_err(|e| e.to_string())

@@ -31,7 +31,7 @@ fn result_of(is_done: bool) -> MavResult {
 }
 
 impl ArduPilot {
-    /// Converts the command to the equivalent COMMAND_INT, as ArduPilot does.
+    /// Converts the command to the equivalent COMMAND_INT, as ArduPilot does, and executes it.
     pub(super) fn take_command_long(
         &mut self,
         now: SimTime,
@@ -105,7 +105,8 @@ impl ArduPilot {
         self.acknowledge(from, command.command as u16, result);
     }
 
-    /// Takes a number, because commands outside the dialect are also acknowledged.
+    /// Acknowledges a command. It is given as a number, because commands outside the dialect are
+    /// also acknowledged.
     pub(super) fn acknowledge(&mut self, from: (u8, u8), command: u16, result: MavResult) {
         let [low, high] = command.to_le_bytes();
         let payload = [low, high, result as u8, 0, 0, 0, 0, 0, from.0, from.1];
@@ -117,7 +118,7 @@ impl ArduPilot {
         );
     }
 
-    /// Changes the mode. Like Rover, it knows only its own modes.
+    /// Changes the mode. Like Rover, the boat accepts only Rover's own modes.
     pub(super) fn command_own_mode(&mut self, base_mode: MavModeFlag, number: u32) -> MavResult {
         if base_mode.contains(MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED) {
             self.command_mode(number)
@@ -216,7 +217,8 @@ impl ArduPilot {
             .for_each(|place| self.autopilot.set_home(place));
     }
 
-    /// Changes the speed in modes that drive to positions; returns whether the current mode is one.
+    /// Changes the speed in modes that drive to positions. Returns whether the current mode is such
+    /// a mode.
     fn change_speed(&mut self, speed_m_s: f64) -> bool {
         match self.mode {
             RoverMode::Guided => self.set_points.set_speed(speed_m_s),
@@ -228,8 +230,8 @@ impl ArduPilot {
         }
     }
 
-    /// Drives to a position, at the given speed if any. Like Rover, it accepts a speed only if the
-    /// boat is already driving to a position.
+    /// Drives to a position, at the given speed if any. Like Rover, the boat accepts a speed only
+    /// if it is already driving to a position.
     fn command_reposition(&mut self, command: &COMMAND_INT_DATA) -> MavResult {
         let may_change_mode = command.param2 as i32 & CHANGE_MODE != 0;
         let at_e7 = (command.x, command.y);

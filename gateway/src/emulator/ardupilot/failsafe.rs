@@ -1,4 +1,5 @@
-//! The ground station failsafe of an emulated ArduPilot boat, as in Rover. It needs no gateway.
+//! The ground station failsafe of an emulated ArduPilot boat, as in Rover. It works without a
+//! gateway.
 
 use super::ArduPilot;
 use crate::mavlink::RoverMode;
@@ -18,8 +19,9 @@ pub(super) struct StationWatch {
 }
 
 impl ArduPilot {
-    /// The station is lost after FS_GCS_TIMEOUT without a message; FS_TIMEOUT later the boat
-    /// executes FS_ACTION. Only action 5 (terminate) disarms the boat.
+    /// Checks for the loss of the station. The station is lost after FS_GCS_TIMEOUT without a
+    /// message; FS_TIMEOUT later, the boat executes FS_ACTION. Only action 5 (terminate) disarms
+    /// the boat.
     pub(super) fn check_failsafe(&mut self, now: SimTime) {
         let is_enabled = self.parameters.value("FS_GCS_ENABLE") != 0.0;
         let Some(heard_at) = self.station.heard_at.filter(|_| is_enabled) else {
@@ -47,7 +49,7 @@ impl ArduPilot {
 
     fn fail_safe(&mut self) {
         self.set_points.manual = None;
-        // With a value of 2, a mission continues.
+        // If FS_GCS_ENABLE is 2, a mission continues.
         if self.mode == RoverMode::Auto && self.parameters.value("FS_GCS_ENABLE") == 2.0 {
             return self.say(
                 MavSeverity::MAV_SEVERITY_WARNING,

@@ -77,7 +77,7 @@ impl MissionStore {
             .then(|| before.iter().filter(|item| is_waypoint(item)).count() as u16 + 1)
     }
 
-    /// The item that leads to a waypoint.
+    /// `MISSION_CURRENT` with the number of the item that leads to a waypoint.
     pub(super) fn current(&self, waypoint: u16) -> MavMessage {
         let waypoints = self
             .items
@@ -147,7 +147,7 @@ impl MissionStore {
         if let Some(mission_type) =
             type_of(message).filter(|kind| *kind != MavMissionType::MAV_MISSION_TYPE_MISSION)
         {
-            // The reply of a board that has no fences and rally points.
+            // The reply of a board without fences or rally points.
             return Some(Some(typed_ack(
                 from,
                 MavMissionResult::MAV_MISSION_UNSUPPORTED,
@@ -243,7 +243,7 @@ impl MissionStore {
         ack(from, MavMissionResult::MAV_MISSION_ACCEPTED)
     }
 
-    /// An item; the home can always be read.
+    /// The item with this number, if it exists. The home (item 0) always does.
     fn item(
         &self,
         from: (u8, u8),
@@ -349,7 +349,7 @@ fn float_from_int(item: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_DATA {
     }
 }
 
-/// The result of an upload or of a single item.
+/// The acknowledgement of an upload or of a single item, with its result.
 pub(super) fn ack(from: (u8, u8), mavtype: MavMissionResult) -> MavMessage {
     typed_ack(from, mavtype, MavMissionType::MAV_MISSION_TYPE_MISSION)
 }

@@ -1,7 +1,7 @@
 //! An emulated ArduPilot Rover boat: MAVLink commands in, telemetry out, without sockets or clocks.
 //!
-//! It follows Rover's documentation for boats: it is driven in mode GUIDED when armed, drops a
-//! set-point after three seconds, accepts messages for its own system and broadcasts, and
+//! The boat follows Rover's documentation: it is driven in mode GUIDED when armed, drops a
+//! set-point after three seconds, accepts broadcasts and messages addressed to its own system, and
 //! acknowledges commands.
 
 mod command;
@@ -104,7 +104,7 @@ impl ArduPilot {
 
     /// Receives bytes from a link.
     pub fn receive(&mut self, now: SimTime, bytes: &[u8]) {
-        // Move it out during the call, because the callback needs the whole boat.
+        // Move the framer out during the call, because the callback needs the whole boat.
         let mut framer = std::mem::take(&mut self.framer);
         framer.push_frames(bytes, &mut |frame| match frame {
             Frame::Read(received) => self.apply(now, &received),
@@ -127,7 +127,7 @@ impl ArduPilot {
                 }
             }
             self.note(format!("mode {mode:?}"));
-            // Rover shows the new mode at once.
+            // Rover reports the new mode at once.
             self.send(&MavMessage::HEARTBEAT(self.heartbeat()));
         }
     }
@@ -156,7 +156,7 @@ impl ArduPilot {
         };
         let pose = own.nav.pose();
         if self.mode == RoverMode::Guided && self.set_points.expires(now) {
-            // In this mode a boat keeps station, whereas a car stops.
+            // Without a set-point in this mode, a boat keeps station, whereas a car stops.
             self.autopilot.begin(pose.at);
             self.say(MavSeverity::MAV_SEVERITY_WARNING, FORGOTTEN);
         }
@@ -185,7 +185,7 @@ impl ArduPilot {
         self.parameters.value("WP_SPEED")
     }
 
-    /// Its system number.
+    /// The boat's system number.
     fn system(&self) -> u8 {
         self.parameters.value("SYSID_THISMAV") as u8
     }
@@ -193,7 +193,8 @@ impl ArduPilot {
     /// Appends the frames to send at once.
     pub fn answers(&mut self, out: &mut Vec<u8>) {
         out.append(&mut self.outbox);
-        // Set the number here and not earlier: the reply to a new number comes from the old one.
+        // Change the system number only here: the reply to the message that sets a new number must
+        // come from the old one.
         self.writer.system = self.system();
     }
 
@@ -235,7 +236,7 @@ impl ArduPilot {
                 self.station.heard_at = Some(now);
                 self.set_points.take_channels(now, channels);
             }
-            // Messages from others are ignored, as by Rover.
+            // Like Rover, ignore these messages from any system but the ground station.
             MavMessage::HEARTBEAT(_)
             | MavMessage::MANUAL_CONTROL(_)
             | MavMessage::RC_CHANNELS_OVERRIDE(_) => {}

@@ -46,9 +46,9 @@ struct Target {
     mask: PositionTargetTypemask,
     /// The position, if valid.
     place: Option<Ned>,
-    /// Velocity along the axes of its frame, m/s.
+    /// Velocity along the axes of the message's frame, m/s.
     velocity: [f32; 2],
-    /// Yaw in its frame, rad, and rate of turn, rad/s.
+    /// Yaw in that frame, rad, and rate of turn, rad/s.
     yaw: [f32; 2],
     /// The true heading of the first axis of the frame, rad.
     frame_rad: f64,
@@ -71,11 +71,11 @@ pub(super) fn is_global(frame: MavFrame) -> bool {
 /// The set-points in force.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SetPoints {
-    /// In mode GUIDED: when it arrived, the steering target, and the speed, m/s.
+    /// In mode GUIDED: when the set-point arrived, the steering target, and the speed, m/s.
     pub(super) guided: Option<(SimTime, Course, f64)>,
     /// The destination in mode GUIDED, if a position was commanded.
     destination: Option<Ned>,
-    /// The commanded speed on the way to it, if any, m/s.
+    /// The commanded speed on the way to the destination, if any, m/s.
     speed_m_s: Option<f64>,
     /// The input of a remote control over MAVLink: throttle and steering, -1 to 1.
     pub(super) manual: Option<(SimTime, f64, f64)>,
@@ -187,9 +187,9 @@ impl SetPoints {
         self.follow(now, &target, speed_max_m_s)
     }
 
-    /// Sets a position, or a speed with a rate of turn or a heading: a separate one, or that of the
-    /// velocity. Follows Rover's `handle_set_position_target_local_ned`, including its sign of the
-    /// speed.
+    /// Sets a position, or a speed with a rate of turn or a heading. Without a separate heading,
+    /// that of the velocity is used. Follows Rover's `handle_set_position_target_local_ned`,
+    /// including the sign that it gives the speed.
     fn follow(
         &mut self,
         now: SimTime,
@@ -232,7 +232,7 @@ impl SetPoints {
         )
     }
 
-    /// Goes to a position, if valid.
+    /// Goes to a position; returns whether it is valid.
     pub(super) fn go_to(&mut self, place: Ned) -> bool {
         if place.is_finite() {
             (self.guided, self.destination) = (None, Some(place));
@@ -240,7 +240,8 @@ impl SetPoints {
         place.is_finite()
     }
 
-    /// Sets the speed (m/s) on the way to a position; returns whether there is a position.
+    /// Sets the speed (m/s) on the way to a position. Returns `false` if there is no position or
+    /// the speed is too low.
     pub(super) fn set_speed(&mut self, speed_m_s: f64) -> bool {
         let is_taken = self.destination.is_some() && speed_m_s >= SPEED_MIN_M_S;
         if is_taken {
@@ -269,7 +270,7 @@ impl SetPoints {
     fn set(&mut self, now: SimTime, course: Course, speed_m_s: f64) -> Result<(), &'static str> {
         let (Course::Heading(steered) | Course::Turn(steered)) = course;
         if !steered.is_finite() || !speed_m_s.is_finite() {
-            return Err("set-point ignored: it is not finite");
+            return Err("set-point ignored: a value is not finite");
         }
         (self.guided, self.destination) = (Some((now, course, speed_m_s)), None);
         Ok(())
@@ -296,7 +297,8 @@ impl SetPoints {
     pub(super) fn manual(&self, now: SimTime) -> Order {
         match self.manual {
             Some((at, throttle, steering)) if (now - at).as_s() <= HELD_S => {
-                // PILOT_STEER_TYPE 0: when going astern, the remote control steers the stern.
+                // PILOT_STEER_TYPE 0: astern, the same stick position turns the boat the other way,
+                // as in a car.
                 let side = if throttle < 0.0 { -1.0 } else { 1.0 };
                 autopilot::thrust(100.0 * throttle, 100.0 * side * steering)
             }

@@ -124,7 +124,8 @@ impl Streams {
 }
 
 impl ArduPilot {
-    /// Sends a message with current data; returns whether there were any.
+    /// Sends the message with this number and current data. Returns `false` if the boat has no such
+    /// message or no data for it.
     pub(super) fn send_message(&mut self, now: SimTime, id: u32) -> bool {
         if id == EKF_STATUS_REPORT {
             let flags = if self.sensed.has_fix(now) {
