@@ -33,7 +33,8 @@ const NORMAL_975: f64 = 1.96;
 pub struct Plan {
     /// Total number of futures for the curve.
     pub futures: usize,
-    /// Futures for each boat: from the start, once as recorded and once with the baseline.
+    /// Number of games from the start in which each boat is replaced by the baseline; as many are
+    /// played as recorded, for comparison.
     pub futures_of_boat: usize,
     /// The strategy that replaces each boat's strategy in turn.
     pub baseline: Strategy,
