@@ -29,7 +29,7 @@ fn ip(args: &str) -> Result<(), String> {
 }
 
 impl Hosts {
-    /// Creates the hosts; prints the reason and returns `None` if this is not permitted.
+    /// Creates the hosts; prints the reason and returns `None` if this fails.
     pub(crate) fn connect() -> Option<Hosts> {
         let reason = match Hosts::try_connect() {
             Ok(hosts) => return Some(hosts),
