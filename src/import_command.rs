@@ -20,7 +20,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Game that was played, which defines field, teams and rules: a file or the name of a game.
-    /// Without it, the field encloses the tracks
+    /// Without this option, the field encloses the tracks
     #[arg(long, value_name = "GAME", value_parser = existing)]
     game: Option<PathBuf>,
     /// Columns of a CSV table, as MEANING=COLUMN or MEANING=COLUMN:UNIT, separated by commas.

@@ -35,7 +35,7 @@ impl Hosts {
             Ok(hosts) => return Some(hosts),
             Err(reason) => reason,
         };
-        eprintln!("skipped: network namespaces cannot be made here: {reason}");
+        eprintln!("skipped: cannot create network namespaces here: {reason}");
         None
     }
 
