@@ -1,4 +1,4 @@
-//! Command line arguments that define where the page is served.
+//! Command line arguments that define how and where the page is served.
 
 use super::hub_args::own_address;
 use crate::screen::{self, Screen};

@@ -154,7 +154,8 @@ pub fn games(scenario: &Scenario, plan: &Plan) -> usize {
 }
 
 impl Course {
-    /// Plays the game, and keeps a moment every five seconds, or fewer if there are few `futures`.
+    /// Plays the game, and keeps a moment every five seconds, or at longer intervals if there are
+    /// few `futures`.
     fn of(past: &Past, futures: usize) -> Result<Course, String> {
         let step_s = STEP_S.max(2.0 * past.until.as_s() / futures.max(1) as f64);
         let mut at = vec![];
