@@ -1,5 +1,5 @@
-//! A game played from both sides: once as it is and once with the teams' strategies exchanged, with
-//! the points added up.
+//! Adds up the points of a game played from both sides: once as it is, and once with the teams'
+//! strategies exchanged.
 
 use anyhow::{Result, bail};
 use command_line::explain::UsageError;
@@ -26,7 +26,8 @@ pub(crate) fn are_equal(scenario: &Scenario) -> bool {
 }
 
 impl BothSides {
-    /// The teams of a game.
+    /// Checks that the game can be played from both sides: it has no real boats, and the teams use
+    /// different strategies.
     pub(crate) fn new(scenario: &Scenario) -> Result<BothSides> {
         scenario.has_no_real_boats()?;
         let name = |team: usize| {
@@ -48,7 +49,8 @@ impl BothSides {
         Ok(BothSides { teams })
     }
 
-    /// Each strategy's points in both games, beginning with the strategy of the first team.
+    /// Each strategy's total over both games. The strategy that the first team uses in the first
+    /// game comes first.
     fn points(&self, reports: &[Report]) -> [u32; 2] {
         let points = |entry: usize| {
             let of_game = |(game, report): (usize, &Report)| {

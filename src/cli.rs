@@ -146,7 +146,7 @@ pub(crate) fn first() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The error of this build for a command line, if it rejects it.
+/// The error with which this build rejects a command line, if it does.
 fn refused(words: &str) -> Option<clap::Error> {
     let words = std::iter::once("squall").chain(words.split_whitespace());
     let refused = Cli::command().try_get_matches_from(words).err()?;
@@ -275,7 +275,7 @@ mod tests {
         }
     }
 
-    /// All options that take a value, each after its commands.
+    /// All options that take a value, each preceded by its subcommands.
     fn options(command: &Command, before: &[String]) -> Vec<Vec<String>> {
         let own = command
             .get_arguments()

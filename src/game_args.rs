@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
-    /// Game: a file, or the name of a game, built-in or in scenarios/games
+    /// Game: a file, or the name of a built-in game or of one in scenarios/games
     #[arg(value_name = "GAME", value_parser = scenario_files::file_of(Kind::GAME))]
     scenario: PathBuf,
     /// Random seed [default: the seed in the game file]
@@ -160,7 +160,7 @@ impl GameArgs {
     }
 }
 
-/// A game's result, with its settings.
+/// A game's outcome and the data about its run, as JSON.
 fn result_of(report: &Report) -> Result<serde_json::Value> {
     let mut value =
         serde_json::to_value(&report.outcome).context("cannot encode the result as JSON")?;
@@ -168,7 +168,7 @@ fn result_of(report: &Report) -> Result<serde_json::Value> {
     Ok(value)
 }
 
-/// Parses a team and its file.
+/// Parses `TEAM=FILE`.
 fn team_and_file(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((team, file)) if !team.is_empty() && !file.is_empty() => {

@@ -36,7 +36,8 @@ pub(crate) struct Args {
     /// values
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = whole::<usize>(20, 10_000))]
     runs: usize,
-    /// Length of a segment, s: every run restarts from the log at the beginning of each segment
+    /// Length of a segment, s: every run restarts from the logged state at the beginning of each
+    /// segment
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(2.0, 3600.0, "s"))]
     segment_s: f64,
     /// Physics tick, s [default: 0.05]
@@ -107,7 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     );
     screen::print(&table(&title, &gap));
 
-    // Chance effects of waves and gusts are not the boat file's fault.
+    // Changing the boat file cannot remove differences caused by random waves and gusts.
     let mean = Setting {
         sea: without_chance(first.sea.clone()),
         ..first
@@ -167,12 +168,12 @@ fn table(title: &str, gap: &Gap) -> String {
     text
 }
 
-/// The numbers of the boat file to change.
+/// Suggests which numbers in the boat file to change.
 fn advice(changes: &[Change]) -> String {
     if changes.is_empty() {
-        return "no change of one number in the boat file brings the runs closer\n".to_owned();
+        return "no change to a single number in the boat file brings the runs closer to the boat\n".to_owned();
     }
-    let mut text = "one change that brings the runs closer, the best first\n".to_owned();
+    let mut text = "single changes that bring the runs closer to the boat, best first\n".to_owned();
     for Change { estimate, explains } in changes {
         let key = format!("{}.{}", estimate.parameter.table, estimate.parameter.key);
         text.push_str(&format!(

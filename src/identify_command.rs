@@ -129,7 +129,7 @@ pub(crate) fn named(logs: &[PathBuf]) -> String {
     shown.join(", ")
 }
 
-/// The logs of a boat, one after the other.
+/// Reads the logs of a boat and joins them.
 pub(crate) fn read_log(
     paths: &[PathBuf],
     columns: (Option<&Map>, Option<&str>),
@@ -147,7 +147,8 @@ pub(crate) fn read_log(
     all.context("no log given")
 }
 
-/// The log as a table: the user's own, or the boat's part of another program's log.
+/// The log as a table: a CSV file as it is, unless `map` or `vehicle` is given; otherwise the data
+/// of one boat, converted as by `squall import`.
 fn sheet(log: &Path, (map, vehicle): (Option<&Map>, Option<&str>)) -> Result<Sheet> {
     if Format::of(log)? == Format::Csv && map.is_none() && vehicle.is_none() {
         return read_sheet(log);

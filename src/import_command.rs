@@ -20,7 +20,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Game that was played, which defines field, teams and rules: a file or the name of a game.
-    /// Without it, the field encloses the tracks
+    /// Without this option, the field encloses the tracks
     #[arg(long, value_name = "GAME", value_parser = existing)]
     game: Option<PathBuf>,
     /// Columns of a CSV table, as MEANING=COLUMN or MEANING=COLUMN:UNIT, separated by commas.
@@ -117,13 +117,14 @@ fn summary(files: &[Input], imported: &Imported) -> String {
     text
 }
 
-/// The table for fitting one boat: the only one in the log, or the named one.
+/// The table for fitting one boat: the named boat, or the only boat in the log.
 pub(crate) fn table_of(path: &Path, map: Option<&Map>, boat: Option<&str>) -> Result<String> {
     let (logs, boat) = logs_of(path, map, boat)?;
     Ok(import::table(&logs, &boat))
 }
 
-/// A log, and the name of its only boat, or the given name.
+/// Reads a log; also returns the name of the selected boat or, if none is selected, of the only
+/// one.
 pub(crate) fn logs_of(
     path: &Path,
     map: Option<&Map>,

@@ -136,7 +136,7 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
         ));
         remarks.extend(damaged.remark());
     }
-    // Every pass over the file finds the same damage.
+    // Every pass over the file finds the same damage: report it once.
     let mut told = BTreeSet::new();
     remarks
         .iter()

@@ -19,7 +19,7 @@ pub(crate) struct Minds {
     proposals: BTreeMap<VehicleId, Vec<(SimTime, PolicyProposal)>>,
 }
 
-/// The minds of one team, up to their last decision.
+/// The minds of one team, advanced to their last decision.
 struct Team {
     runner: MindRunner,
     /// Index of the picture for each decision.

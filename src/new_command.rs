@@ -50,7 +50,7 @@ pub(crate) struct CopyArgs {
 
 #[derive(clap::Args)]
 pub(crate) struct FilesArgs {
-    /// Lists one kind of file, and describes each: game, field, rules, boat, sea, strategy,
+    /// Lists and describes only files of this kind: game, field, rules, boat, sea, strategy,
     /// tournament, gateway, rewards, training or sweep
     #[arg(value_parser = check_command::kind)]
     kind: Option<Kind>,
@@ -134,7 +134,7 @@ pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
     };
     let path = write(kind, args.as_name.as_deref().unwrap_or(name), content)?;
     screen::print(&format!(
-        "created {}, which refers to built-in files; edit it as you like\n",
+        "created {}; edit it as you like\n",
         path.display()
     ));
     Ok(ExitCode::SUCCESS)

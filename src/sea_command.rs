@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (sea, spectrum) = match (&args.sea, &args.from) {
         (Some(sea), _) => (water_args::sea(sea, args.seed)?, vec![]),
         (None, Some(log)) => estimated(args, log, &boat, tick)?,
-        (None, None) => bail!("expected a sea or a log"),
+        (None, None) => bail!("expected a sea, or a log with --from"),
     };
     let field = trial::open_field();
     let summary = Summary::new(&sea, &boat, &field, args.seed);

@@ -47,7 +47,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Stores the results in this folder and plays only the missing games, so that you can add
-    /// entries or resume a stopped tournament; `squall view FOLDER` shows it
+    /// entries or resume a stopped tournament; `squall view FOLDER` shows the results
     #[arg(long, value_name = "FOLDER", conflicts_with = "quality")]
     league: Option<PathBuf>,
     /// Also reports the quality of play: order chatter, idle time, time near the edges, contacts

@@ -373,7 +373,7 @@ fn record(path: &Path, name: &str, past: &Past, changes: &Changes, future: usize
     ));
     if changes.sea.is_some() {
         screen::remark(
-            "its sea changes at that moment, so `squall replay --check` reports a difference there",
+            "the sea changes during this recording, so `squall replay --check` reports a difference then",
         );
     }
     Ok(())

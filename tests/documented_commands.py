@@ -4,8 +4,8 @@
 Commands come from the help, the templates, the hints in the program's own output, README.md, docs/ and scenarios/.
 Each page has an empty folder and one shell, so that its commands follow one another as a reader types them. Output that
 a page shows must be the real output. The first hint of each kind follows the command that printed it. The tables below
-list every exception with its reason. A command that fails, and an entry that excuses nothing, are errors. Ends with 1
-if there are any.
+list every exception with its reason. A command that fails, and an entry that excuses nothing, are errors. Exits with
+status 1 if there are any.
 """
 
 import os

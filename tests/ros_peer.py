@@ -284,8 +284,8 @@ session = zenoh.open(config)
 print("ready", flush=True)
 time.sleep(600)
 """
-# Receives frames at the sim, behind the bridge and behind the relay, in a process that decodes nothing. Prints for each of some
-# seconds how much later than at the sim each frame arrived at the others, in ms.
+# Receives frames at the sim, behind the bridge and behind the relay, in a process that decodes nothing. Prints for
+# several periods how much later each frame arrived at each of them than at the sim, in ms.
 RECEIVER = """
 import json, os, sys, time, zenoh
 arrived = [{}, {}, {}]

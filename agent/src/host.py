@@ -212,7 +212,7 @@ class World:
         if numbers.size == 1 and numbers[0] == int(numbers[0]) and -ACTIONS <= numbers[0] < ACTIONS:
             return int(numbers[0]) % ACTIONS  # As in Python lists, -1 is the last.
         if numbers.size >= 2:
-            # Turns of up to 180 degrees go to their own side; larger ones go the shorter way round.
+            # A turn of up to 180 degrees keeps its side; a larger one goes the shorter way round.
             turn_deg = float(numbers[1])
             return [float(numbers[0]), turn_deg if abs(turn_deg) <= 180.0 else (turn_deg + 180.0) % 360.0 - 180.0]
         raise ValueError(f"the action is {action!r}, expected one of {ACTIONS}, or a speed and a turn")
@@ -250,7 +250,7 @@ class Entry:
             raise ValueError(f"compute_action takes {self.count} arguments, expected 3 (2024), 4, or 5 with info")
         self.ages = sorted({i for end in ("short", "long") for i in self._ages(end)})
         self.before: dict[tuple[int, int], list[tuple[np.ndarray, Numbers]]] = {}
-        """Older observations, newest first, by the asked boat and the observed one."""
+        """Older observations, newest first, by the boat that decides and the observed boat."""
 
     @staticmethod
     def _imported(name: str, file: Path) -> Any:
@@ -387,7 +387,7 @@ def main(arguments: list[str] | None = None) -> int:
         description="Runs a competition entry: checks that it answers, or serves it to squall.",
     )
     parser.add_argument("entry", metavar="FOLDER", type=Path, help="folder of the entry, or its solution.py")
-    parser.add_argument("--red", action="store_true", help="asks it for the boats of the red team")
+    parser.add_argument("--red", action="store_true", help="asks the entry for the actions of the red team's boats")
     parser.add_argument("--serve", action="store_true", help="answers requests on standard input")
     given = parser.parse_args(arguments)
     if given.serve:

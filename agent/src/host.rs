@@ -102,7 +102,7 @@ impl Entry {
         let process = if host.is_allowed {
             Process::start(scenario, team, host)
         } else {
-            Err("this process may not run it".to_owned())
+            Err("this process may not run it; to allow it, use --host".to_owned())
         };
         Entry {
             process,

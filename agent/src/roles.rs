@@ -7,9 +7,9 @@ use scenario::strategy::{Assignment, Program, Strategy};
 
 /// The role of a vehicle in the game with the scenario's seed.
 ///
-/// The roles are dealt to the team's boats with the same strategy, in the scenario's order,
-/// restarting from the first role when they run out. A seeded deal shuffles them with the team's
-/// own stream. Every mind of a team computes the same result on its own.
+/// The roles are dealt to the boats of the team that follow the same strategy, in the scenario's
+/// order, restarting from the first role when they run out. A seeded deal shuffles them with the
+/// team's own stream. Every mind of a team computes the same result on its own.
 pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     let me = &scenario.vehicles[vehicle.index()];
     dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| {

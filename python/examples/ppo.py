@@ -108,7 +108,7 @@ def main() -> None:
         batch, finished, observations, counts = played(environment, policy, observations, counts)
         learn(policy, optimiser, batch)
         steps = update * STEPS * environment.num_envs
-        scores = f"{np.mean(finished, axis=0)} points, own and enemies''" if finished else "no game ended"
+        scores = f"{np.mean(finished, axis=0)} points, own and enemies'" if finished else "no game ended"
         rate = steps / (time.perf_counter() - begun)
         print(f"{steps} steps, {rate:.0f} per second, reward {batch['rewards'].mean():.4f} per step, {scores}", flush=True)
     torch.save(policy.state_dict(), "policy.pt")

@@ -90,8 +90,8 @@ class VectorEnvironment:
     team_names: list[str]
 
     def step(self, actions: NDArray[Any], restarts: bool = True) -> None:
-        """Plays one step of every game, without the interpreter's lock. Games that end restart in it; without
-        `restarts` in the next step, which ignores their actions.
+        """Plays one step of every game, without the interpreter's lock. Games that end restart in the same step or, without
+        `restarts`, in the next one, which ignores their actions.
 
         `actions` are (rows,) int64 below `action_count`, or (rows, 2) finite float32. Otherwise raises ValueError and plays nothing.
 
@@ -159,14 +159,14 @@ class SweepPlan:
         """Plays the games from `begin` to before `end` in this process, without the interpreter's lock.
 
         Returns for each game its line in the table of games, and the lines of its boats. A game that cannot start has a line with the
-        reason. Ctrl-C ends it with KeyboardInterrupt. Raises IndexError if the games do not exist.
+        reason. Ctrl-C ends the call with KeyboardInterrupt. Raises IndexError if the games do not exist.
         """
 
     def begin(self, folder: str | Path) -> SweepStudy:
-        """Creates a study in a new folder. Raises ValueError if there is one already, OSError if it cannot be written."""
+        """Creates a study in a folder. Raises ValueError if the folder already contains one, OSError if it cannot be written."""
 
     def resume(self, folder: str | Path) -> SweepStudy:
-        """Resumes the study in a folder. Raises ValueError if there is none, or if it belongs to a different sweep."""
+        """Resumes the study in a folder. Raises ValueError if the folder contains none, or that of a different sweep."""
 
 class SweepStudy:
     """The results of a sweep in a folder, in the same files as those of `squall sweep`."""
@@ -205,7 +205,7 @@ class TournamentPlan:
     def records(self, begin: int, end: int, threads: int = 1) -> list[str]:
         """Plays the games from `begin` to before `end` in this process, without the interpreter's lock.
 
-        Returns a JSON record of each. Ctrl-C ends it with KeyboardInterrupt. Raises IndexError if the games do not exist.
+        Returns a JSON record of each. Ctrl-C ends the call with KeyboardInterrupt. Raises IndexError if the games do not exist.
         """
 
     def report(self, records: list[str]) -> tuple[str, str, str, int]:

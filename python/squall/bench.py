@@ -1,7 +1,7 @@
 """Measures steps per second: `python -m squall.bench`.
 
 Plays games with all four boats observed and random actions, at the game's own period of 0.1 s, in the spaces of Pyquaticus. An agent
-step is one boat's. Times are CPU times, so that other programs have little effect. If Pyquaticus can be imported
+step is the step of one boat. Times are CPU times, so that other programs have little effect. If Pyquaticus can be imported
 (https://github.com/mit-ll-trusted-autonomy/pyquaticus), it is measured too.
 """
 

@@ -223,7 +223,7 @@ def read(path: Path) -> Source:
         if data[:1] != b"\x80":
             raise ConversionError(f"its first bytes are {data[:8]!r}, expected {SUPPORTED}")
         if data[2:16].find(b"\xfc\x9c\x46\xf9\x20\x6a\xa8\x50\x19") >= 0:
-            raise ConversionError("PyTorch before 1.6 wrote it: load it there and save it with torch.save again")
+            raise ConversionError("it has the format of PyTorch before 1.6: load it with a newer PyTorch, and save it again with torch.save")
         return Source("RLlib", _load(data))
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         names = archive.namelist()
@@ -342,7 +342,7 @@ def _activation(source: Source, layers: list[Layer]) -> str:
         return "relu" if re.search(r"\.(dqn|sac|td3)\.", policy + ".") else "tanh"
     if all(re.match(r"(actor|actor_mean|module\.actor)\.\d+$", layer.name) for layer in layers):
         return "tanh"
-    raise ConversionError("it does not say which activation its layers have: give it with --activation")
+    raise ConversionError("it does not name the activation of its layers: choose one with --activation")
 
 
 # The ONNX file.

@@ -118,7 +118,7 @@ class Page:
             return
         print(f"{self.url} shows the last game until Enter is pressed", file=sys.stderr)
         try:
-            # Ctrl-C also ends the program that serves the page, so this never waits longer than it runs.
+            # Ctrl-C also ends the program that serves the page, so this never waits longer than that program runs.
             while server.poll() is None and not select.select([sys.stdin], [], [], 0.2)[0]:
                 pass
         except KeyboardInterrupt:

@@ -31,14 +31,14 @@ def register() -> None:
 
 
 def team_vector(num_envs: int = 1, **options: Any) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
-    """This many `TeamEnv` in parallel."""
+    """A `VectorEnv` of this many games, each like a `TeamEnv`."""
     from squall.vector import VectorEnv
 
     return VectorEnv(num_envs, row="team", **options)
 
 
 def boat_vector(num_envs: int = 1, **options: Any) -> gymnasium.vector.VectorEnv[Any, Any, Any]:
-    """This many `BoatEnv` in parallel."""
+    """A `VectorEnv` of this many games, each like a `BoatEnv`."""
     from squall.vector import VectorEnv
 
     return VectorEnv(num_envs, row="boat", **{"mates": "pav01", **options})

@@ -60,7 +60,7 @@ class BoatStep:
     events: Sequence[Event]
     """The events of all boats in the step, in order."""
     reward: float
-    """The reward by the file that `rewards` names."""
+    """The reward according to the file that `rewards` names."""
     terminated: bool
     truncated: bool
 

@@ -29,8 +29,8 @@ class Options(TypedDict, total=False):
     game: File
     """The game, by default "surveyor_2v2". Both teams must have the same number of boats."""
     observation: Literal["squall", "pyquaticus", "pyquaticus_2023", "pyquaticus_2026"]
-    """A boat's observation: "squall" (default), the data of its sensors and radio, or that environment's values: "pyquaticus" (2024, 2025),
-    "pyquaticus_2023" or "pyquaticus_2026"."""
+    """A boat's observation: "squall" (default), the data of its sensors and radio, or the values of a version of Pyquaticus:
+    "pyquaticus" (2024, 2025), "pyquaticus_2023" or "pyquaticus_2026"."""
     frames: int
     """Number of decisions in an observation with "squall", newest first; 1 by default."""
     action: Literal["pyquaticus", "continuous", "options"]
@@ -40,8 +40,8 @@ class Options(TypedDict, total=False):
     """How actions are carried out: "direct" (default) as orders, or through the helms of a strategy with a behaviour of kind `policy`,
     which keep the boat safe. "policy" and "teleop" are such strategies for turns and speeds, "options" is one for options."""
     decision_s: float | None
-    """How long an action holds, s: a multiple of the game's own period. By default the smallest multiple from 0.5 on; None: the game's
-    own period."""
+    """How long an action holds, s: a multiple of the game's own period. By default the smallest multiple of at least 0.5; None: the
+    game's own period."""
     episode_max_s: float | None
     """Time after which an episode is truncated (`truncated`), s. None (default): whole games."""
     starts: int | None

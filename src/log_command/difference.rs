@@ -1,4 +1,4 @@
-//! Compares two recorded games, in text form.
+//! The comparison of two recorded games in text form.
 
 use analysis::{Comparison, Pair, Response, SETTLED_S};
 use primitives::printable::add_line;

@@ -22,8 +22,9 @@ pub(crate) struct Args {
     /// Strategy to follow instead of the one in the sim's scenario: a file or a name
     #[arg(long, value_name = "STRATEGY", value_parser = crate::scenario_files::file_of(scenario::Kind::STRATEGY))]
     strategy: Option<PathBuf>,
-    /// Lets strategies run the competition entry PATH, written as in the strategy, with the
-    /// interpreter PYTHON; may be repeated. An agent runs no other programs that a sim names
+    /// Lets the sim's strategies run the competition entry PATH with the interpreter PYTHON, both
+    /// written as in the strategy; may be repeated. The agent runs no other programs that the sim
+    /// names
     #[arg(long, num_args = 2, value_names = ["PYTHON", "PATH"])]
     host: Vec<String>,
     /// In lockstep, if the strategy uses an external policy: how long to wait for its proposal at

@@ -29,15 +29,15 @@ pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
     Ok(command)
 }
 
-/// Checks the given token, if any.
+/// Checks the token in the environment, if any.
 pub(crate) fn check_token() -> Result<()> {
     std::env::var(TOKEN_VARIABLE).map_or(Ok(()), |text| {
         text.parse::<Token>().map(drop).context(TOKEN_VARIABLE)
     })
 }
 
-/// The token of the games that this process's children serve and join: a new one, unless one is
-/// given.
+/// The token of the games that this process's children serve and join: the one in the environment,
+/// otherwise a new one.
 pub(crate) fn token() -> &'static Token {
     static TOKEN: LazyLock<Token> = LazyLock::new(|| {
         let given = std::env::var(TOKEN_VARIABLE)
@@ -48,7 +48,7 @@ pub(crate) fn token() -> &'static Token {
     &TOKEN
 }
 
-/// Passes a command the keys for this role from a folder, if any. It then needs no token.
+/// Passes a command the keys for this role from a folder, if any, in place of the token.
 pub(crate) fn give_keys(command: &mut Command, folder: Option<&Path>, identity: &Identity) {
     if let Some(folder) = folder {
         command
@@ -88,8 +88,8 @@ impl ChildProcess {
         })
     }
 
-    /// The lines of the child's piped output that `parse` accepts. Works only once; ends with the
-    /// child.
+    /// The lines of the child's piped output that `parse` accepts. Can be called only once. The
+    /// lines end when the child does.
     pub(crate) fn lines<T: Send + 'static>(
         &mut self,
         parse: fn(&str) -> Option<T>,
@@ -151,7 +151,8 @@ impl Drop for ChildProcess {
     }
 }
 
-/// Waits at most five seconds for all of them to end; returns the failures.
+/// Waits at most five seconds for all children to end. Returns the failures, including children
+/// that are still running: dropping these kills them.
 pub(crate) fn wait_for_all(children: &mut [ChildProcess]) -> Vec<String> {
     const LIMIT: Duration = Duration::from_secs(5);
     let start = clock::now();

@@ -44,8 +44,7 @@ pub(crate) struct HardwareLoop {
 }
 
 impl LoopArgs {
-    /// Starts the loop for the boats of the game with this name and endpoint, if requested and if
-    /// there are real boats.
+    /// Starts the loop for the real boats of the game with this name and endpoint, if requested.
     pub(crate) fn start(
         &self,
         (args, pace): (&GameArgs, &PaceArgs),

@@ -1,4 +1,4 @@
-//! `squall helm`: one decision of a boat's helm, as a table and as numbers.
+//! `squall helm`: prints one decision of a boat's helm as a table, and optionally writes it as CSV.
 
 use super::{helm_page, helm_query};
 use crate::screen;

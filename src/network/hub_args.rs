@@ -80,7 +80,7 @@ fn with_port(endpoint: &mut String) -> Result<()> {
     Ok(())
 }
 
-/// A game name that is unique on the network.
+/// A game name with a random suffix, so that it is very likely unique on the network.
 pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
     use std::hash::{BuildHasher, Hasher, RandomState};
     let bits = RandomState::new().build_hasher().finish() & 0xff_ffff;

@@ -114,7 +114,7 @@ fn new(args: &NewArgs) -> Result<()> {
     folders.iter().try_for_each(|folder| show(folder))?;
     screen::print(
         "\nAnyone with a folder has the rights that it grants: copy each folder only to the machine that needs it, and \
-         use it with --keys FOLDER.\nA set cannot be extended: to add a part or replace a lost folder, create a new set for all machines.\n",
+         use it with --keys FOLDER.\nA set cannot be extended: to add a participant or replace a lost folder, create a new set for all machines.\n",
     );
     Ok(())
 }

@@ -27,8 +27,8 @@ pub(crate) struct Args {
     /// Publishes the whole game for pMarineViewer to the MOOSDB at this address, for example :9000
     #[arg(long, value_name = "ADDRESS")]
     shore: Option<Address>,
-    /// Forwards what the shoreside publishes to pShare at this address, for example
-    /// shore.local:9300; may be repeated
+    /// Forwards the shoreside's variables to pShare at this address, for example shore.local:9300;
+    /// may be repeated
     #[arg(long, value_name = "HOST:PORT", requires = "shore")]
     pshare: Vec<String>,
     /// Listens on this address, such as 0.0.0.0:9301, for commands from pShare, such as DEPLOY_ALL

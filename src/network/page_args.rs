@@ -1,4 +1,4 @@
-//! Command line arguments that define where the page is served.
+//! Command line arguments that define how and where the page is served.
 
 use super::hub_args::own_address;
 use crate::screen::{self, Screen};
@@ -30,10 +30,10 @@ pub(crate) struct PageArgs {
     /// machine can read it in the process list: prefer --page-token-file
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
-    /// File with the page's token [default: the token in the variable SQUALL_PAGE_TOKEN]
+    /// Reads the page's token from this file instead of the variable SQUALL_PAGE_TOKEN
     #[arg(long, value_name = "FILE", conflicts_with = "token")]
     page_token_file: Option<PathBuf>,
-    /// Additional host name of the page; requires a token
+    /// Additional host name of the page; requires a token; may be repeated
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
     /// Chart to draw beneath the field: GeoJSON, or PNG or JPEG with a world file
@@ -121,7 +121,7 @@ impl PageArgs {
         address_of(page, self.token().unwrap_or_default().as_deref())
     }
 
-    /// The same arguments, but opening the browser.
+    /// The same arguments, with `--open`.
     pub(crate) fn opened(&self) -> PageArgs {
         PageArgs {
             open: true,
@@ -129,7 +129,7 @@ impl PageArgs {
         }
     }
 
-    /// Serves a page with the content from `put`, at this path, until Ctrl-C.
+    /// Serves a page, on which `put` places the content of the file at this path, until Ctrl-C.
     pub(crate) fn show(
         &self,
         path: &Path,

@@ -33,7 +33,7 @@ impl ReplayFutures {
         })
     }
 
-    /// Checks the question: a page must not open files other than those it may choose.
+    /// Checks the question: a page may use only the strategies and seas that it offers.
     fn check(&self, question: &Question) -> Result<(), String> {
         let Question {
             at_s, futures, sea, ..
@@ -42,7 +42,9 @@ impl ReplayFutures {
             return Err(format!("{futures} futures, expected 5 to {FUTURES_MAX}"));
         }
         if !(0.0..=86_400.0).contains(at_s) {
-            return Err(format!("the moment {at_s} s, expected 0 to 86400 s"));
+            return Err(format!(
+                "the time of the change is {at_s} s, expected 0 to 86400 s"
+            ));
         }
         let unknown = |kind: &str, name: &str| Err(format!("there is no {kind} {name:?}"));
         let strategies = question.teams.values().chain(question.vehicles.values());

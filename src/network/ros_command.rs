@@ -34,14 +34,14 @@ struct BridgeArgs {
     /// Names of the boats that ROS 2 drives by /NAME/cmd_vel or /NAME/order
     #[arg(long, num_args = 1.., value_name = "NAME")]
     vehicle: Vec<String>,
-    /// How long a request for a boat is valid, s of game time
+    /// How long an order to a boat is valid, s of game time
     #[arg(long, value_name = "S", default_value_t = 0.5, value_parser = seconds)]
     ttl_s: f64,
     /// Hides the true state from ROS 2: publishes no truth topics and no markers of boats
     #[arg(long)]
     no_truth: bool,
     /// Lets every ROS 2 node pause, resume, step, reset and end the game and release stops, using
-    /// this node's token
+    /// the bridge's own token or keys
     #[arg(long)]
     operator: bool,
     /// Endpoint of the ROS 2 router (rmw_zenohd); if none is running on this machine, the bridge

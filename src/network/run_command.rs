@@ -234,13 +234,13 @@ fn start_sim(
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-/// The line with which an agent reports faults of a boat's competition entry.
+/// Parses the line with which an agent reports faults of a boat's competition entry.
 fn faults_of(line: &str) -> Option<EntryFaults> {
     serde_json::from_str(line).ok()
 }
 
-/// The number of boats for one agent process: the requested number, or more if this would start too
-/// many processes for the machine. This does not affect the game.
+/// The number of boats for one agent process: the requested number, or more if that would start
+/// more than 64 processes. It does not affect the game.
 fn crew_size(asked: u16, vehicles: usize) -> usize {
     const PROCESSES_MAX: usize = 64;
     usize::from(asked).max(vehicles.div_ceil(PROCESSES_MAX))

@@ -335,8 +335,8 @@ fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
         .collect()
 }
 
-/// The range of a panel's points in one direction, with a margin and a minimum for its unit, since
-/// a millimetre is not a navigation error.
+/// The range of a panel's points in one direction, with a margin. It has a minimum for each unit,
+/// so that an error of a millimetre does not look large.
 fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
     let numbers = panel
         .lines

@@ -9,15 +9,15 @@ import struct
 
 import numpy as np
 
-OBSERVATION = "@OBSERVATION@"  # what the network was trained with
+OBSERVATION = "@OBSERVATION@"  # the observation that the network was trained with
 OUTPUT = "@OUTPUT@"  # the network's output that holds the action
-CONTINUOUS = @CONTINUOUS@  # whether its actions are a turn and a speed, or one of several
+CONTINUOUS = @CONTINUOUS@  # whether its action is a turn and a speed, rather than one of several
 ACTIONS = None  # a table of its actions, each a fraction of the top speed and a turn in degrees
 SAMPLED = @SAMPLED@  # whether actions are sampled from the network's probabilities
 SPEED_MAX_M_S = 3.0  # of the competition's Surveyor
 DIAGONAL_M = math.hypot(160.0, 80.0)  # of its field
 
-# Numbers of the boat itself and of each other boat, with `is_disabled` in 2026.
+# How many numbers describe the boat itself and each other boat, including `is_disabled`, which was added in 2026.
 OWN, OTHER = 22, 9
 
 
@@ -44,7 +44,7 @@ class solution:
 
 
 def observed(numbers):
-    """The network's observation, from the competition's."""
+    """Converts an observation of the competition to that of the network."""
     disabled = np.zeros(numbers.size, bool)
     scores = np.zeros(numbers.size, bool)
     distance = np.zeros(numbers.size, bool)
@@ -62,8 +62,8 @@ def observed(numbers):
         return numbers
     if OBSERVATION == "pyquaticus":
         return numbers[~disabled]
-    # The observations of 2023 have no scores. Distances are relative to 10 m more, or to half the field for the
-    # scrimmage line.
+    # The observations of 2023 have no scores. Their distances are relative to the diagonal plus 10 m, or, to the
+    # scrimmage line, to half the field.
     most_m = np.full(numbers.size, DIAGONAL_M + 10.0)
     most_m[13] = 80.0
     scaled = ((numbers + 1.0) * (DIAGONAL_M / most_m) - 1.0).astype(np.float32)

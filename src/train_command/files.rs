@@ -46,7 +46,7 @@ pub(super) struct Files {
     base: Option<PathBuf>,
 }
 
-/// A partially written table.
+/// The length and checksum of a table to which lines are appended.
 struct Table {
     name: &'static str,
     bytes: usize,

@@ -19,7 +19,7 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Size limit of a state, bytes: networks of the maximum size, and a league of them.
+/// Size limit of a state, bytes: enough for a league of networks of the maximum size.
 const STATE_BYTES_MAX: u64 = 4 << 30;
 /// Minimum time between two saved states. SIGTERM does not wait for the end of an update, and
 /// everything after the last saved state is lost.
@@ -29,7 +29,7 @@ const SAVE_SHARE: u32 = 20;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Training file to run: a path or a name
+    /// Training to run: a file or a name
     #[arg(value_parser = crate::scenario_files::file_of(Kind::of::<Training>()))]
     training: PathBuf,
     /// Folder for the policy and all tables [default: runs/train/NAME]

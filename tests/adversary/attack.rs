@@ -21,7 +21,7 @@ pub(crate) type Attack = (&'static str, fn(&Target) -> Box<dyn Any>);
 
 pub(crate) const ATTACKS: [Attack; 9] = [
     (
-        "messages of 64 MB, and many of a size that is read",
+        "messages of 64 MB, and many messages of an accepted size",
         big_messages,
     ),
     ("a million keys", many_keys),
@@ -37,7 +37,7 @@ pub(crate) const ATTACKS: [Attack; 9] = [
         "connections that stop half-way through the handshake",
         half_handshakes,
     ),
-    ("as many sessions as there is room for", sessions),
+    ("as many sessions as the hub accepts", sessions),
 ];
 
 /// Topics that anyone may publish on, and topics that only the sim receives.

@@ -399,8 +399,8 @@ fn a_gateway_can_report_only_for_its_own_boat() {
     };
     assert!(answer("blue_one")["answer"]["Refused"].is_object());
     assert!(answer("red_one")["answer"]["Granted"].is_object());
-    // Only a boat's own gateway can answer for it, whatever keys others hold; it receives no order
-    // for any other boat.
+    // Only a boat's own gateway can answer for it, whatever keys others hold. The gateway receives
+    // no orders for other boats.
     let others = ["team-blue", "observer", "operator"].map(|name| traitor(&sim, &own, name));
     let _forged: Vec<_> = others
         .iter()

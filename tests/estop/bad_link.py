@@ -277,7 +277,7 @@ def main():
     try:
         link = Link(hosts_of(args.host), Scheduler(quality, args.seed))
     except (OSError, ValueError, subprocess.CalledProcessError) as error:
-        sys.exit(f"the link cannot be made: {error}")
+        sys.exit(f"cannot create the link: {error}")
     # Programs that keep every core busy must not delay packets beyond the requested delay.
     run_at_once()
     print("ready", flush=True)

@@ -8,7 +8,7 @@ import time
 from machine import HERE
 from rig import BOAT, BOATS, CONSOLE, GAME, SIM
 
-# One in this many cuts lasts until both ends have given up the connection: zenoh does after 10 s.
+# One in this many cuts lasts until both ends have closed the connection, as zenoh does after 10 s.
 LONG_CUT_EVERY, LONG_CUT_S = 10, 12.0
 LOSS_PCT = 5.0
 

@@ -13,9 +13,9 @@ One boat and all boats are stopped in turn, by a line to `squall gateway console
     loss         5 % of all packets are lost, on every path
 
 A stop is in time if every boat concerned was sent standby within the one-way delay plus 200 ms. `squall gateway tell`
-is measured too, with delays of 50, 150 and 300 ms, without and with loss: in round trips, beyond what it takes without
-a delay. The exit code is 1 if a stop is late, if the console does not show it, or shows it before it has happened, or
-if `tell` without loss needs more than three round trips.
+is measured too, with delays of 50, 150 and 300 ms, with and without loss. Its time beyond that without a delay is given
+in round trips. The exit code is 1 if a stop is late, if the console does not show it or shows it before it has
+happened, or if `tell` without loss needs more than three round trips.
 
 Linux, root, Python 3.9, no packages; strangers publish with the package eclipse-zenoh. Where namespaces or TUN devices
 cannot be created, nothing is measured, and the exit code is 0.

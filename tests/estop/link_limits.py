@@ -6,8 +6,8 @@ failsafes.
 
 Two machines are joined by a bad link (bad_link.py). One runs the sim. `--far` selects what runs on the other: the
 agents, or the gateways with their emulated boats. The two real boats of `mixed_2v2` arm themselves once, so the first
-failsafe of each stays. Prints one JSON line: the time under way without a failsafe, failsafes, and the traffic of each
-boat. Linux, root, Python 3.9, no packages.
+failsafe of each is final unless --rearm-within-s is given. Prints one JSON line: the time under way without a
+failsafe, failsafes, and the traffic of each boat. Linux, root, Python 3.9, no packages.
 """
 
 import argparse

@@ -46,7 +46,7 @@ class Program:
                 self.news.notify_all()
 
     def write(self, line):
-        """Sends it a line; returns the monotonic time just before, ns."""
+        """Sends the program a line; returns the monotonic time just before, ns."""
         at_ns = time.monotonic_ns()
         self.child.stdin.write(line.encode() + b"\n")
         self.child.stdin.flush()
@@ -71,7 +71,7 @@ class Program:
                     return None
 
     def request(self, line, limit_s=30.0, ends=lambda _: True):
-        """Sends it a line, and returns the lines of its reply."""
+        """Sends the program a line, and returns the lines of its reply."""
         mark = self.mark()
         self.write(line)
         if self.find(ends, limit_s, mark) is None:

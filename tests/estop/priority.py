@@ -28,7 +28,7 @@ def run_when_idle():
 
 
 def stall_in(line):
-    """When a stall ended, ns, and how long it was, ms: of a line that this prints."""
+    """Parses a line that this program prints: when a stall ended, ns, and how long it lasted, ms."""
     _, at_ns, late_ms = line.split()
     return int(at_ns), float(late_ms)
 

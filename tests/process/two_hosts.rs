@@ -29,13 +29,13 @@ fn ip(args: &str) -> Result<(), String> {
 }
 
 impl Hosts {
-    /// Creates the hosts; prints the reason and returns `None` if this is not permitted.
+    /// Creates the hosts; prints the reason and returns `None` if this fails.
     pub(crate) fn connect() -> Option<Hosts> {
         let reason = match Hosts::try_connect() {
             Ok(hosts) => return Some(hosts),
             Err(reason) => reason,
         };
-        eprintln!("skipped: network namespaces cannot be made here: {reason}");
+        eprintln!("skipped: cannot create network namespaces here: {reason}");
         None
     }
 

@@ -15,7 +15,8 @@ use std::f64::consts::PI;
 
 /// How long a boat must stand still, contrary to its orders, to count as stopped by an obstacle, s.
 const STOPPED_S: f64 = 2.0;
-/// Maximum distance to that obstacle from the estimated position, m: a large receiver error.
+/// Maximum distance from the boat's estimated position to the obstacle that stopped it, m: a large
+/// receiver error.
 const ERROR_MAX_M: f64 = 10.0;
 /// Distance within which another boat may be the cause of the stop, m.
 const BOAT_M: f64 = 4.0;

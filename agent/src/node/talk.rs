@@ -52,8 +52,9 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        // Taken from the scenario's strategies. If a teammate runs a different one (`--strategy`),
-        // the agent waits at most once for messages that never come.
+        // The scenario's strategies determine which boats send messages. If a teammate runs a
+        // different strategy (`--strategy`), the agent waits at most once for messages that never
+        // come.
         let talks = |vehicle| {
             roles::role_of(scenario, vehicle)
                 .variables

@@ -19,8 +19,8 @@ const OFFSET_GAIN_PER_S: f64 = 0.25;
 /// Remaining turn of the model above which the offset is not updated, because the difference comes
 /// from the turn, rad.
 const TURNING_RAD: f64 = 0.35;
-/// Change of heading after which an offset is no longer valid, because the wind acts at a different
-/// angle, rad.
+/// Change of heading over which an offset decays by a factor of e, because the wind acts at a
+/// different angle, rad.
 const FORGOTTEN_RAD: f64 = 0.8;
 /// Upper bound of the offset, rad.
 const OFFSET_MAX_RAD: f64 = 0.7;

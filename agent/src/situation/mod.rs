@@ -114,8 +114,8 @@ pub(crate) struct Situation {
     /// The interception pairs, computed on first use in a decision.
     interception: OnceCell<Arc<[Pair]>>,
     interception_before: Arc<[Pair]>,
-    /// Whether the boat was tagged inside its untag place and must leave it before it can return to
-    /// it.
+    /// Whether the boat was tagged inside its untag place, and must leave this place before it
+    /// returns.
     leaving: bool,
 }
 

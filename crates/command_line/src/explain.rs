@@ -16,7 +16,8 @@ const COLUMNS: usize = 100;
 pub struct UsageError(pub String);
 
 impl UsageError {
-    /// An error that is found only after the options are parsed.
+    /// Reports an error that is found only after the options are parsed as a mistake in the command
+    /// line.
     pub fn of(error: Error) -> Error {
         UsageError(line(&error)).into()
     }
@@ -119,7 +120,7 @@ fn problem(problem: &Problem) -> String {
     format!("{told}\n{shown}")
 }
 
-/// The byte range of a line to underline: a word, or a string with its quotes.
+/// The byte range to underline in a line: a word, or a string with its quotes.
 fn span(source: &str, column: usize) -> Option<std::ops::Range<usize>> {
     let start = source
         .char_indices()

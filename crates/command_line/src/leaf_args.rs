@@ -19,8 +19,8 @@ pub struct AccessArgs {
     /// Folder with this node's keys, created by `squall keys new`; required if the game uses keys
     #[arg(long, value_name = "FOLDER")]
     keys: Option<PathBuf>,
-    /// File with the game's token, which `squall sim` prints [default: the token in the variable
-    /// SQUALL_TOKEN, or that of the game on this machine]
+    /// Reads the game's token, which `squall sim` prints, from this file [default: from the
+    /// variable SQUALL_TOKEN, or from the game on this machine]
     #[arg(long, value_name = "FILE")]
     token_file: Option<PathBuf>,
 }
@@ -178,7 +178,7 @@ impl LeafArgs {
         }))
     }
 
-    /// The place of this game, or else of the game that the arguments name.
+    /// The network settings for this game, or else for the game that the arguments name.
     fn net_of(&self, game: Option<&GameName>, keys: Option<Arc<Bundle>>) -> Result<Net> {
         let game = game.or(self.game.as_ref());
         let mut connect = self.connect.clone();

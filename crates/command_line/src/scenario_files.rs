@@ -129,7 +129,7 @@ pub fn find_any(word: &str) -> Result<Vec<PathBuf>> {
         let known: BTreeSet<String> = kinds().iter().flat_map(|kind| all_names(*kind)).collect();
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
         bail!(
-            "no scenario file named {word:?}{}; list them with: squall files",
+            "no scenario file named {word:?}{}; list all files with: squall files",
             did_you_mean(word, &known)
         );
     }

@@ -28,7 +28,7 @@ pub fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
 }
 
 /// Ends the process soon after the flag is set, even if it is still busy or waiting for the
-/// network. It suits commands whose files are complete whenever they end.
+/// network. Use it only in commands whose files are complete at any time.
 pub fn exit_when_late(stop: &Arc<AtomicBool>) {
     when_late(stop, || std::process::exit(130));
 }

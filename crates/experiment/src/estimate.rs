@@ -42,7 +42,7 @@ impl Estimate {
 
     /// The ratio of two sums over independent observations, each a part and its whole, with its
     /// interval by linearisation (Cochran, Sampling Techniques, 1977, section 2.11); `None` if the
-    /// wholes are zero.
+    /// sum of the wholes is zero.
     pub fn of_ratio(observations: &[(f64, f64)]) -> Option<Estimate> {
         let whole: f64 = observations.iter().map(|(_, whole)| whole).sum();
         if whole <= 0.0 {
@@ -62,8 +62,8 @@ impl Estimate {
         })
     }
 
-    /// The mean and, if there is an interval, its half-width, multiplied by `times`, with this many
-    /// decimal places.
+    /// The mean and, if there is an interval, its half-width; both multiplied by `times`, with this
+    /// many decimal places.
     pub(crate) fn shown(&self, times: f64, digits: usize) -> String {
         let half = self.half_width().map_or(String::new(), |half| {
             format!(" ± {:.digits$}", half * times)

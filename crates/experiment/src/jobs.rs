@@ -20,8 +20,8 @@ pub(crate) fn teams_of(game: &Path, files: &Arc<Files>) -> Result<Vec<String>, P
         .collect())
 }
 
-/// Checks that a game has no real boats, which cannot take part in experiments; otherwise reports a
-/// problem in `file`.
+/// Loads a game, which must have no real boats: these cannot take part in experiments. If it has
+/// any, reports a problem in `file`.
 pub(crate) fn load_game(
     game: &Path,
     overrides: &Overrides,

@@ -33,7 +33,8 @@ const NORMAL_975: f64 = 1.96;
 pub struct Plan {
     /// Total number of futures for the curve.
     pub futures: usize,
-    /// Futures for each boat: from the start, once as recorded and once with the baseline.
+    /// Number of games from the start in which each boat is replaced by the baseline; as many are
+    /// played as recorded, for comparison.
     pub futures_of_boat: usize,
     /// The strategy that replaces each boat's strategy in turn.
     pub baseline: Strategy,
@@ -153,7 +154,8 @@ pub fn games(scenario: &Scenario, plan: &Plan) -> usize {
 }
 
 impl Course {
-    /// Plays the game, and keeps a moment every five seconds, or fewer if there are few `futures`.
+    /// Plays the game, and keeps a moment every five seconds, or at longer intervals if there are
+    /// few `futures`.
     fn of(past: &Past, futures: usize) -> Result<Course, String> {
         let step_s = STEP_S.max(2.0 * past.until.as_s() / futures.max(1) as f64);
         let mut at = vec![];

@@ -122,7 +122,7 @@ export class Program {
     afterwards(t, () => this.end());
   }
 
-  /** Waits for a match in its output, and returns it. */
+  /** Waits for a match in the program's output, and returns the match. */
   hears(pattern) {
     return until(`squall ${this.args.join(' ')} says ${pattern}`, () => {
       const found = this.said.match(pattern);
@@ -136,7 +136,7 @@ export class Program {
     return (await this.hears(/at (http:\S+) \(Ctrl-C/))[1];
   }
 
-  /** Ends it like Ctrl-C, by force if necessary. Returns its exit status. */
+  /** Ends the program like Ctrl-C, by force if necessary. Returns its exit status. */
   async end() {
     if (this.code !== undefined) return this.code;
     this.child.kill('SIGINT');
@@ -146,7 +146,7 @@ export class Program {
     return code;
   }
 
-  /** Kills it, as a power cut would. */
+  /** Kills the program, as a power cut would. */
   async kill() {
     this.child.kill('SIGKILL');
     await this.ended;

@@ -160,7 +160,7 @@ test('a recomputed helm agrees with the recording', async (t) => {
     assert.equal(collective.length, courses * speeds);
     assert(functions.length > 0 && functions.every((each) => each.utilities.length === collective.length));
     modes.add(mode);
-    await sight.until('the page says so', () => /matches the recorded order/.test(document.getElementById('helm-reason').textContent));
+    await sight.until('the page says so', () => /matches the recorded one/.test(document.getElementById('helm-reason').textContent));
     const facts = await sight.text('#boat-summary');
     assert(facts.includes(mode.replaceAll('_', ' ').replaceAll(':', ' › ')) && /m\/s · \d{3}°$/.test(facts), facts);
     // The chosen decision has a high utility, and the rose is not empty.

@@ -37,7 +37,7 @@ const orders = (sight, course_deg, speed_m_s) => sight.until(`${course_deg}° at
 /** Waits until the boat stands still. */
 const stands = (sight) => sight.until(`${BOAT} stands`, (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s < 0.2, BOAT);
 
-/** Waits until no page drives it, according to the server. */
+/** Waits until no page drives the boat, according to the server. */
 const isFree = (sight) => sight.until('no page drives the boat', () => squall.driving === null
   && document.querySelector('#pane-boat .note').hidden);
 

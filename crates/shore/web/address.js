@@ -30,7 +30,7 @@ export function keepAddress() {
   try {
     sessionStorage.setItem(KEPT, location.hash);
   } catch {
-    // Without it, the way back leads to the start of the report.
+    // Without storage, the way back leads to the start of the report.
   }
 }
 

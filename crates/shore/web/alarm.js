@@ -13,7 +13,7 @@ const LOUDNESS = 0.25;
 /** Maximum number of alarms shown one by one. */
 const SHOWN_MAX = 4;
 
-/** The sound. Browsers allow it after the first press on the page. */
+/** The sound of alarms. Browsers allow sound only after the first press on the page. */
 class Sound {
   constructor() {
     this.context = null;
@@ -30,7 +30,7 @@ class Sound {
 
   allow() {
     this.context ??= new AudioContext();
-    // If the browser refuses, the state does not change, and the page shows it.
+    // If the browser refuses, the state does not change, and the page shows this.
     if (this.context.state === 'suspended') this.context.resume().catch(() => {});
   }
 

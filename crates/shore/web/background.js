@@ -20,7 +20,7 @@ export class Background {
   constructor(on) {
     this.on = on;
     this.button = document.getElementById('show-chart');
-    /** As received from the server; null if there is none. */
+    /** The background as received from the server; null if there is none. */
     this.given = null;
     this.image = null;
     this.datum = null;
@@ -64,7 +64,7 @@ export class Background {
     this.lay();
   }
 
-  /** Aligns it with the field. */
+  /** Aligns the background with the field. */
   lay() {
     this.forget();
     if (this.given && this.datum && !this.isFar()) {
@@ -89,7 +89,7 @@ export class Background {
       [a * (right - 0.5) + b * (down - 0.5) + c, d * (right - 0.5) + e * (down - 0.5) + f]);
   }
 
-  /** Whether it belongs to another site; if so, a notice gives its position. */
+  /** Whether the background belongs to another site; if so, a notice gives its position. */
   isFar() {
     const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
     for (const position of this.positions()) {
@@ -129,7 +129,7 @@ export class Background {
     if (closed) path.closePath();
   }
 
-  /** Draws it beneath the rest of the field. */
+  /** Draws the background beneath the rest of the field. */
   draw(context, view) {
     if (!this.drawn) return;
     context.save();

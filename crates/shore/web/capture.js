@@ -27,7 +27,7 @@ async function offer(blob, name) {
       return;
     } catch (error) {
       if (error.name === 'AbortError') return;
-      // The press was too long ago for sharing: save it instead.
+      // The press was too long ago for sharing: save the file instead.
     }
   }
   const link = document.createElement('a');

@@ -133,7 +133,7 @@ export class Controls {
     this.mode = hello.mode;
     this.rights = Boolean(hello.rights);
     this.real = hello.chart.vehicles.some(({ external }) => external);
-    /** Whether it may release boats: for real ones the page needs the operator's token. */
+    /** Whether the page may release boats: for real boats it needs the operator's token. */
     this.releases = this.rights && (hello.operates || !this.real);
     this.stopped = false;
     this.eStopped = false;

@@ -59,7 +59,7 @@ export class CurveChart {
   /**
    * Shows `curves`: `{ name, xs, values, raw, colour, style, dots, best }`, where `raw` are the values before smoothing, `colour` and `style` are
    * numbers, `dots` marks the values, and `best` is where the best policy was. `axis` is `{ title, words, begins, to }`: `begins` are the starts
-   * and names of stages, and `to` is where it ends.
+   * and names of stages, and `to` is the end of the axis.
    */
   take(curves, axis) {
     this.curves = curves.map((curve) => ({ colour: 0, style: 0, raw: null, best: null, ...curve }));
@@ -176,6 +176,6 @@ export class CurveChart {
     this.legend.replaceChildren(...this.curves.map(one));
     const when = this.at === null ? 'at the end' : `at ${this.axis?.words(this.at) ?? ''}`;
     const said = this.curves.map((curve) => `${curve.name ? `${plain(curve.name)} ` : ''}${words(curve)}`).join(', ');
-    this.place.setAttribute('aria-label', `${this.title}, ${when}: ${said}. Arrow keys move along it.`);
+    this.place.setAttribute('aria-label', `${this.title}, ${when}: ${said}. Arrow keys move the cursor.`);
   }
 }

@@ -170,7 +170,7 @@ export class Details {
     const report = helm?.report;
     // A helm keeps utilities only while a page requests them; a paused game computes none.
     const unseen = isBare(report) && game.state?.phase === 'paused';
-    const words = unseen ? UNSEEN : report ? this.computedWords(helm) : plain(helm?.reason ?? 'Waiting for its helm …');
+    const words = unseen ? UNSEEN : report ? this.computedWords(helm) : plain(helm?.reason ?? 'Waiting for the boat’s helm …');
     write(this.reason, words);
     show(this.reason, words !== '');
     show(this.helmBox, Boolean(report));
@@ -213,8 +213,8 @@ export class Details {
 
   computedWords(helm) {
     if (!helm.computed) return '';
-    if (helm.agrees === false) return 'Recomputed from the recording. It does NOT match the recorded order.';
-    return `Recomputed from the recording${helm.agrees ? '; it matches the recorded order.' : '.'}`;
+    if (helm.agrees === false) return 'Recomputed from the recording. The order does NOT match the recorded one.';
+    return `Recomputed from the recording${helm.agrees ? '; the order matches the recorded one.' : '.'}`;
   }
 
   tellBehaviours(report) {

@@ -40,7 +40,7 @@ export function toml(datum, [outline, ...keepOuts]) {
 }
 
 export class FenceEditor {
-  /** `on` has `changed()`, called when it must be redrawn. */
+  /** `on` has `changed()`, called when the polygons must be redrawn. */
   constructor(on) {
     this.on = on;
     this.button = document.getElementById('draw-fence');
@@ -167,7 +167,7 @@ export class FenceEditor {
     show(this.present, fences.length > 0);
   }
 
-  /** Draws it above the boats. */
+  /** Draws the polygons above the boats. */
   draw(context, view) {
     if (!this.active) return;
     this.polygons.forEach((corners, at) => {

@@ -110,7 +110,7 @@ export class Game {
     return this.over || this.state?.phase === 'over';
   }
 
-  /** Forgets data of the boat selected before. */
+  /** Selects a boat, and forgets data of the previously selected one. */
   select(name) {
     this.selected = name;
     this.helm = null;

@@ -55,7 +55,7 @@ function factsOf(status, waited_s) {
   const later = (seconds) => (Number.isFinite(seconds) ? seconds + waited_s : NaN);
   const [fix_s, battery_s, mode_s] = [later(status.nav_age_s), later(status.battery_age_s), later(status.mode_age_s)];
   const facts = [{ name: 'Link', short: status.link === 'up' ? 'link up' : 'no link', words: status.link ?? '–', bad: status.link !== 'up' }];
-  // The boat's own faults do not stop it, but come first.
+  // The boat's own faults do not stop it, but are listed first.
   for (const words of status.alarms ?? []) facts.unshift({ name: 'Alarm', short: words.split(',')[0], words, bad: true });
   // In a dry run the boat is only sent standby, whatever its state.
   if (typeof status.would_send === 'string') {

@@ -82,7 +82,7 @@ export class Legend {
     this.drawn = '';
   }
 
-  /** Shows or hides it; redrawn if colours or the game have changed. */
+  /** Shows or hides the legend, and redraws it if colours or the game have changed. */
   tell(game, visible) {
     show(this.place, visible && Boolean(game.hello));
     // Beside the chart, or where a phone has space for it.

@@ -17,7 +17,7 @@ const SILENCE_S = 4;
 /** Interval of checks for this, s. */
 const WATCH_S = 1;
 
-/** Replies from the server: the state of the game or replay, or a result. */
+/** Requests that the server answers, with the state of the game or replay, or with a result. */
 const ANSWERED = ['control', 'operate', 'mission'];
 
 /** The token in the page's address, where it survives a reload. */

@@ -105,7 +105,7 @@ export class Panels {
     this.apply(panel);
   }
 
-  /** Returns it to its default size. */
+  /** Resets a panel to its default size. */
   reset(panel) {
     delete this.sizes[panel.id];
     this.store();

@@ -123,7 +123,7 @@ export class Plot {
     });
   }
 
-  /** Rebuilds it if its curves, colours or visibility have changed, and draws it if something has changed. Returns whether it was drawn. */
+  /** Rebuilds the plot if its curves, colours or visibility have changed, and draws it if anything has changed. Returns whether it was drawn. */
   draw(game, source, boats, colourOf) {
     const { clientWidth: width, clientHeight: height } = this.place;
     if (width < 40 || height < 40) return false;

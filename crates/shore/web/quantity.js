@@ -7,7 +7,7 @@ const unitOf = (places, unit) => (value) => number(value, places, unit);
 const course = (value) => bearing(value);
 
 /** Key, title, unit, format of values, minimum range (so that noise does not fill the plot), and: `from0`, whether the axis starts at
- * zero; `round`, whether values are compass courses; `beside`, a second curve of the same boat, dashed; `to`, whether another boat belongs to it. */
+ * zero; `round`, whether values are compass courses; `beside`, a second curve of the same boat, dashed; `to`, whether it is measured to another boat. */
 export const QUANTITIES = [
   { key: 'speed_m_s', title: 'Speed', unit: 'm/s', words: unitOf(2, 'm/s'), least: 1, from0: true, beside: ['ordered', 'ordered_speed_m_s'] },
   { key: 'heading_deg', title: 'Heading', unit: '°', words: course, round: true, beside: ['ordered', 'ordered_heading_deg'] },

@@ -26,7 +26,7 @@ const TELL_EVERY: u64 = 100;
 pub(super) enum Source {
     /// An existing recording.
     Recorded(PathBuf),
-    /// The game is played again; `digest` is the expected result, if the report contains it.
+    /// The game is played again; `digest` is the expected digest, if the report contains one.
     Played {
         scenario: Box<Scenario>,
         seed: u64,
@@ -85,7 +85,7 @@ impl Games {
         })
     }
 
-    /// The view of the game with this name; `find` returns its source.
+    /// The view of the game with this name; `find` returns its description and source.
     pub(super) fn show(&self, name: &str, find: impl FnOnce() -> Result<Game>) -> Shown {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = open.iter().find(|open| open.name == name) {

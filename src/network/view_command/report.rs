@@ -178,7 +178,7 @@ impl SweepReport {
             "failures",
         ] {
             if !value[key].is_array() {
-                bail!("{key} is not a list");
+                bail!("{key} is missing or not a list");
             }
         }
         let plan = unpacked(&path.with_file_name(sweep::PACKED_PLAN));

@@ -113,7 +113,7 @@ impl TrainingReport {
 }
 
 impl Run {
-    /// The run in a folder, which printed commands call `shown`.
+    /// The run in a folder. Printed commands refer to the folder as `shown`.
     fn of(folder: PathBuf, shown: &Path) -> Run {
         let name = folder
             .file_name()

@@ -16,10 +16,11 @@ pub struct Axis {
     /// or `opponent`, with strategy files.
     #[schemars(length(min = 1), extend("x-expected" = "a key such as sea.wind.speed_m_s"))]
     pub key: String,
-    /// Levels: numbers, strings or files, all of one type.
+    /// Levels: numbers, Booleans, strings or files, all of one type.
     #[schemars(length(max = 1000))]
     pub values: Vec<AxisValue>,
-    /// Lower and upper limit; uniform in a sampled design.
+    /// Lower and upper limit. A sampled design draws values uniformly between them or, with `log`,
+    /// uniformly in their logarithm.
     #[schemars(inner(range(min = -1e9, max = 1e9)))]
     pub range: Option<[f64; 2]>,
     /// Whether the levels of a range are spaced logarithmically.
@@ -32,7 +33,8 @@ pub struct Axis {
     /// 3 standard deviations.
     #[schemars(inner(range(min = 0, max = 1e9)))]
     pub log_normal: Option<[f64; 2]>,
-    /// Number of levels in a grid: evenly spaced for a range, equally likely for a distribution.
+    /// Number of levels in a grid. They are evenly spaced for a range, and equally likely for a
+    /// distribution.
     #[schemars(range(min = 2, max = 1000), extend("default" = 5))]
     pub count: u32,
     /// Value while another axis varies alone. Default: the middle level.
@@ -214,8 +216,8 @@ fn truncated_normal(share: f64) -> f64 {
     let least = below(-CUT);
     let whole = below(CUT) - below(-CUT);
     let wanted = least + share * whole;
-    // The distribution is monotonic, and 60 bisections of 6 deviations reach the precision of a
-    // double.
+    // The distribution function is monotonic, and 60 bisections of a range of 6 deviations reach
+    // the precision of a double.
     let mut low = -CUT;
     let mut high = CUT;
     for _ in 0..60 {

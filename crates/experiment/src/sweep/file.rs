@@ -192,7 +192,7 @@ fn problem_of_key(axis: &Axis, given: &[&str]) -> Option<String> {
         && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
     {
         return Some(format!(
-            "key is {key:?}, expected sea, boat, rules, field, opponent or a longer key: {error}"
+            "key is {key:?}, expected sea, boat, rules, field, opponent or a key such as sea.wind.speed_m_s: {error}"
         ));
     }
     let found = match given {
@@ -222,8 +222,7 @@ fn problem_of_values(axis: &Axis, given: &'static str) -> Option<(&'static str, 
         .windows(2)
         .any(|pair| kind(&pair[0]) != kind(&pair[1]))
     {
-        let message =
-            format!("values of {key} have different types, expected all numbers or all strings");
+        let message = format!("values of {key} have different types, expected values of one type");
         Some(("values", message))
     } else if (1..values.len()).any(|k| values[..k].contains(&values[k])) {
         let message = format!("values of {key} contain a duplicate, expected unique values");
@@ -252,7 +251,7 @@ fn problem_of_distribution(axis: &Axis) -> Option<(&'static str, String)> {
         };
         axis.log_normal.filter(is_bad).map(|pair| {
             let message = format!(
-                "log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"
+                "log_normal is {pair:?}, expected a median above 0 and a deviation above 0 and at most 10"
             );
             ("log_normal", message)
         })

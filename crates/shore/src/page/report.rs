@@ -17,7 +17,8 @@ pub trait Report: Send + Sync {
 /// A report that may be set after the page has started.
 pub(super) type LateReport = Arc<OnceLock<Arc<dyn Report>>>;
 
-/// The current view of one page, if any. It lasts until the server stops.
+/// The view that one page shows, if any, and its later replacements. The channel closes when the
+/// server stops.
 #[derive(Clone)]
 pub struct Shown {
     pub(super) receiver: watch::Receiver<Option<Arc<dyn View>>>,

@@ -52,7 +52,7 @@ pub(super) struct Function {
 }
 
 impl Helm {
-    /// A valid report with names instead of numbers, with utilities if requested.
+    /// Converts a valid report: names replace indices, and utilities are included if requested.
     pub(super) fn new(scenario: &Scenario, report: &HelmReport, has_utilities: bool) -> Helm {
         let percents = |utilities: &[f32]| {
             utilities

@@ -55,7 +55,7 @@ impl Operating {
         if self.under_way.insert((vehicle, command.needs_token())) {
             return Ok(());
         }
-        Err("its gateway has not answered the previous command yet".to_owned())
+        Err("the boat's gateway has not answered the previous command yet".to_owned())
     }
 
     fn end(&mut self, page: u64, needs_token: bool, operated: Operated) {

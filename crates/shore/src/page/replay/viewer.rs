@@ -361,8 +361,9 @@ impl Viewer for PageViewer {
             {
                 self.playback.set_speed(*factor, now);
             }
-            PageRequest::Seek { .. } | PageRequest::Speed { .. } => {
-                return Err("the value is out of range".to_owned());
+            PageRequest::Seek { .. } => return Err("the time is not finite".to_owned()),
+            PageRequest::Speed { .. } => {
+                return Err("the speed is not a positive finite number".to_owned());
             }
             PageRequest::Control { .. }
             | PageRequest::Drive { .. }
