@@ -56,6 +56,15 @@ pub struct Pilot {
     set_point: SetPoint,
     /// A model that decides in place of an external source.
     policy: Option<BoardPolicy>,
+    /// Labels the boat's situations with a teacher's actions, which the boat does not carry out.
+    adviser: Option<Box<Adviser>>,
+}
+
+/// A teacher that only demonstrates what it would do.
+#[derive(Clone)]
+struct Adviser {
+    helm: HelmMind,
+    teacher: Teacher,
 }
 
 impl Pilot {
@@ -90,18 +99,28 @@ impl Pilot {
         options: &BTreeMap<String, usize>,
         spaces: Spaces,
     ) -> Pilot {
-        let options = (0..program.modes.len())
-            .map(|mode| options.get(&program.path(mode)).copied())
-            .collect();
-        let teacher = Some(Teacher {
-            options,
-            did: None,
-            is_observed: false,
-        });
+        let teacher = Some(Teacher::new(program, options));
         Pilot::new(
             Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program)), teacher),
             spaces,
         )
+    }
+
+    /// The same pilot, with a teacher that does not drive the boat: [`Pilot::taught`] returns what
+    /// the strategy's program would do in the situations into which the pilot's own actions bring
+    /// the boat. `options` as for [`Pilot::by_teacher`].
+    pub fn advised_by(
+        mut self,
+        scenario: &Scenario,
+        vehicle: VehicleId,
+        program: &Program,
+        options: &BTreeMap<String, usize>,
+    ) -> Pilot {
+        self.adviser = Some(Box::new(Adviser {
+            helm: HelmMind::new(scenario, vehicle, program),
+            teacher: Teacher::new(program, options),
+        }));
+        self
     }
 
     fn new(control: Control, spaces: Spaces) -> Pilot {
@@ -112,6 +131,7 @@ impl Pilot {
             actions: spaces.action,
             set_point: SetPoint::default(),
             policy: None,
+            adviser: None,
         }
     }
 
@@ -152,7 +172,7 @@ impl Pilot {
     /// Processes the picture for the next decision. Returns the observation.
     pub fn observe(&mut self, picture: &Picture) -> &[f32] {
         self.control.preview(picture);
-        if let Control::Helm(_, Some(teacher)) = &mut self.control {
+        if let Some(teacher) = self.teacher_mut() {
             (teacher.did, teacher.is_observed) = (None, true);
         }
         self.observer.observe(self.control.situation())
@@ -183,14 +203,39 @@ impl Pilot {
     /// The teacher's decision at the last observation as an action; `None` without a teacher, or if
     /// no action corresponds to it.
     pub fn taught(&self) -> Option<Action> {
-        match &self.control {
-            Control::Helm(_, Some(teacher)) => teacher.did,
+        match (&self.control, &self.adviser) {
+            (Control::Helm(_, Some(teacher)), _) => teacher.did,
+            (_, Some(adviser)) => adviser.teacher.did,
             _ => None,
         }
+    }
+
+    fn teacher_mut(&mut self) -> Option<&mut Teacher> {
+        match (&mut self.control, &mut self.adviser) {
+            (Control::Helm(_, Some(teacher)), _) => Some(teacher),
+            (_, Some(adviser)) => Some(&mut adviser.teacher),
+            _ => None,
+        }
+    }
+
+    /// The helm that exchanges messages with teammates.
+    fn helm_of_messages(&self) -> Option<&HelmMind> {
+        let advising = self.adviser.as_ref().map(|adviser| &adviser.helm);
+        self.control.helm().or(advising)
     }
 }
 
 impl Teacher {
+    fn new(program: &Program, options: &BTreeMap<String, usize>) -> Teacher {
+        Teacher {
+            options: (0..program.modes.len())
+                .map(|mode| options.get(&program.path(mode)).copied())
+                .collect(),
+            did: None,
+            is_observed: false,
+        }
+    }
+
     /// Records the helm's order.
     fn see(&mut self, helm: &HelmMind, order: Order, actions: ActionSpace) {
         if std::mem::take(&mut self.is_observed) {
@@ -247,6 +292,12 @@ impl Control {
 impl Mind for Pilot {
     fn decide(&mut self, picture: &Picture) -> Order {
         self.ask_model(picture);
+        if let Some(adviser) = &mut self.adviser {
+            let order = adviser.helm.decide(picture);
+            adviser.teacher.see(&adviser.helm, order, self.actions);
+            // The boat does not follow this order, so its motion says nothing about its handling.
+            adviser.helm.situation.motion.hold();
+        }
         let SetPoint {
             turn_rad,
             course_rad,
@@ -293,18 +344,20 @@ impl Mind for Pilot {
     }
 
     fn shares(&self) -> bool {
-        self.control.helm().is_some_and(Mind::shares)
+        self.helm_of_messages().is_some_and(Mind::shares)
     }
 
     fn send(&self, messages: &mut Vec<Word>) {
-        if let Some(helm) = self.control.helm() {
+        if let Some(helm) = self.helm_of_messages() {
             helm.send(messages);
         }
     }
 
     fn receive(&mut self, messages: &[Word]) {
-        if let Control::Helm(helm, _) = &mut self.control {
-            helm.receive(messages);
+        match (&mut self.control, &mut self.adviser) {
+            (Control::Helm(helm, _), _) => helm.receive(messages),
+            (_, Some(adviser)) => adviser.helm.receive(messages),
+            _ => {}
         }
     }
 

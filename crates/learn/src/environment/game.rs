@@ -250,11 +250,16 @@ impl Game {
 
 /// The pilot of a boat that receives actions, or that demonstrates a teacher's actions.
 fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
-    if let Some(teacher) = &setup.teacher {
-        let program = agent::roles::role_in(scenario, vehicle, &teacher.strategy);
-        return Pilot::by_teacher(scenario, vehicle, program, &teacher.options, setup.spaces);
+    let Some(teacher) = &setup.teacher else {
+        return policy_pilot(setup, scenario, vehicle);
+    };
+    let program = agent::roles::role_in(scenario, vehicle, &teacher.strategy);
+    if teacher.drives {
+        Pilot::by_teacher(scenario, vehicle, program, &teacher.options, setup.spaces)
+    } else {
+        let pilot = policy_pilot(setup, scenario, vehicle);
+        pilot.advised_by(scenario, vehicle, program, &teacher.options)
     }
-    policy_pilot(setup, scenario, vehicle)
 }
 
 fn policy_pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {

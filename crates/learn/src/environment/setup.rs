@@ -23,11 +23,14 @@ pub enum Control {
     Helm(Box<Strategy>),
 }
 
-/// A strategy that plays in place of the policy, for the policy to imitate.
+/// A strategy for the policy to imitate.
 #[derive(Clone, Debug)]
 pub struct Teacher {
     /// The strategy.
     pub strategy: Box<Strategy>,
+    /// Whether the strategy plays in place of the policy. Otherwise, the policy plays, and the
+    /// strategy says what it would do in the same situations.
+    pub drives: bool,
     /// With [`ActionSpace::Options`]: the option for each mode, by the mode's path. Nothing is
     /// learned from other modes.
     pub options: BTreeMap<String, usize>,
@@ -56,7 +59,7 @@ pub struct Setup {
     pub spaces: Spaces,
     /// How actions reach the boats.
     pub control: Control,
-    /// Plays the policy's boats in its place. `None`: the policy plays.
+    /// Demonstrates actions to imitate. `None`: the policy learns from rewards.
     pub teacher: Option<Teacher>,
     /// A critic's input.
     pub critic: CriticInput,
@@ -273,6 +276,11 @@ impl Setup {
         self.options()
             .map(<[String]>::len)
             .or(self.spaces.action.count())
+    }
+
+    /// Whether a teacher plays in place of the policy, so that actions have no effect.
+    pub fn is_driven(&self) -> bool {
+        self.teacher.as_ref().is_some_and(|teacher| teacher.drives)
     }
 
     /// The number of rows per game: the boats that may receive actions.

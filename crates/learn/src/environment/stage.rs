@@ -68,7 +68,7 @@ impl Setup {
             let allowed = format!("a mode of {}: {}", strategy.name, listed(&mut modes.iter()));
             return Err(wrong("a mode in the teacher's options", unknown, &allowed));
         }
-        let mut options = BTreeMap::new();
+        let (mut options, drives) = (BTreeMap::new(), said.drives);
         let Some(names) = self.options() else {
             if let Some(option) = said.options.values().next() {
                 return Err(wrong(
@@ -77,7 +77,11 @@ impl Setup {
                     "none, because action is not \"options\"",
                 ));
             }
-            return Ok(Teacher { strategy, options });
+            return Ok(Teacher {
+                strategy,
+                drives,
+                options,
+            });
         };
         for mode in modes {
             let name = said.options.get(&mode).unwrap_or(&mode);
@@ -98,6 +102,10 @@ impl Setup {
             let allowed = format!("options for its modes from {}", listed(&mut names.iter()));
             return Err(wrong("the teacher", found, &allowed));
         }
-        Ok(Teacher { strategy, options })
+        Ok(Teacher {
+            strategy,
+            drives,
+            options,
+        })
     }
 }

@@ -58,7 +58,7 @@ impl Rollout {
                 .sailed
                 .extend(boats.flat_map(|boats| (0..per_game).map(move |row| row < boats)));
             rollout.steps.values.extend_from_slice(&values);
-            let actions = if environment.setup().teacher.is_some() {
+            let actions = if environment.setup().is_driven() {
                 vec![Action::Discrete(0); rows]
             } else {
                 rollout.choose(environment.observations(), pool, learner, stream)
@@ -91,11 +91,12 @@ impl Rollout {
         Ok(rollout)
     }
 
-    /// Records the teacher's actions in the last step. Nothing is learned from steps without a
-    /// corresponding action.
+    /// Records the teacher's actions in the last step, in place of the policy's. Nothing is learned
+    /// from steps without a corresponding action.
     fn take_taught(&mut self, environment: &VectorEnvironment) {
         let (rows, per_game) = environment.rows();
         let first = self.counts.len() - rows;
+        self.actions.truncate(first);
         for row in 0..rows {
             let taught = environment
                 .taught(row / per_game)

@@ -185,6 +185,11 @@ pub struct Teacher {
     /// Strategy file.
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
+    /// Whether the strategy plays in place of the policy. If `false`, the policy plays, and learns
+    /// what the strategy would do in the same situations (DAgger: Ross, Gordon and Bagnell, AISTATS
+    /// 2011).
+    #[schemars(extend("default" = true))]
+    pub drives: bool,
     /// With `action = "options"`: the option for each mode. An omitted mode uses the option with
     /// the same name; if there is none, the policy does not learn from that mode.
     #[schemars(extend("default" = {}))]

@@ -320,9 +320,44 @@ fn team_sizes_are_drawn_for_every_game_and_rows_without_a_boat_do_not_count() {
 }
 
 #[test]
+fn a_teacher_that_does_not_drive_labels_the_policys_own_games() {
+    let base = setup("surveyor_2v2", vec![(1.0, Player::Policy)]);
+    let taught_by = |drives| Setup {
+        teacher: Some(Teacher {
+            strategy: strategy("strategy_2"),
+            drives,
+            options: BTreeMap::new(),
+        }),
+        ..base.clone()
+    };
+    let played = |setup: Setup| {
+        let mut environment = begun(setup, 1, 1, 4);
+        let mut taught = vec![];
+        for step in 0..200 {
+            environment
+                .step(&[step / 20, 4, 12, 16].map(Action::Discrete))
+                .unwrap();
+            taught.push(environment.taught(0).to_vec());
+        }
+        (environment.contest(0).outcome().digest, taught)
+    };
+    let (alone, no_labels) = played(base.clone());
+    let (advised, labels) = played(taught_by(false));
+    let (driven, demonstrated) = played(taught_by(true));
+    assert_eq!(advised, alone, "the adviser changes the game");
+    assert_ne!(advised, driven);
+    assert!(no_labels.iter().all(Vec::is_empty));
+    // At first, the situations are the same; later, the policy's actions have changed them.
+    assert_eq!(labels[0], demonstrated[0]);
+    assert_ne!(labels[100], demonstrated[100]);
+    assert!(labels.iter().flatten().flatten().count() > 700);
+}
+
+#[test]
 fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
     let teacher = Teacher {
         strategy: strategy("strategy_2"),
+        drives: true,
         options: BTreeMap::new(),
     };
     let base = setup("surveyor_2v2", vec![(1.0, Player::Policy)]);

@@ -48,6 +48,7 @@ fn short() -> Training {
     let direct = stage("direct", "games/pav01_afloat.toml", None);
     let teacher = Some(Teacher {
         strategy: file("strategies/strategy_2.toml"),
+        drives: true,
         options: BTreeMap::new(),
     });
     let taught = Stage {
@@ -55,12 +56,20 @@ fn short() -> Training {
         teacher,
         ..direct.clone()
     };
+    let advised = Stage {
+        name: "advised".to_owned(),
+        teacher: taught.teacher.clone().map(|teacher| Teacher {
+            drives: false,
+            ..teacher
+        }),
+        ..direct.clone()
+    };
     let helm = stage(
         "helm",
         "games/surveyor_2v2.toml",
         Some("strategies/policy.toml"),
     );
-    let mut training = fixture::short(training("first"), vec![direct, taught, helm]);
+    let mut training = fixture::short(training("first"), vec![direct, taught, advised, helm]);
     training.network.critic = CriticInput::Truth;
     training.ppo = Ppo {
         steps: 32,
