@@ -1,8 +1,9 @@
 //! The front seat: converts an order to settings for the two thrusters.
 //!
 //! A proportional-derivative loop controls the heading; its gains follow from the desired natural
-//! frequency and the hull's inertia and damping. The calibrated resistance plus a
-//! proportional-integral correction control the speed. The available thrust limits both, yaw first.
+//! frequency and the hull's inertia and damping. The speed is controlled by feed-forward of the
+//! calibrated resistance and a proportional-integral correction. If the thrust does not suffice for
+//! both, yaw has priority.
 
 use crate::hull::{HullModel, Planar};
 use crate::thruster::ThrusterModel;

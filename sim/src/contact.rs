@@ -2,8 +2,8 @@
 //!
 //! We integrate surge, sway and yaw ourselves, because a rigid-body engine has one mass for all
 //! directions and a hull with added mass has three. Where hulls may touch, rapier receives the
-//! tick's motion, resolves the contacts and moves the poses. Its changes of velocity are copied
-//! back.
+//! tick's motion, resolves the contacts and moves the poses. The impulses that rapier applied are
+//! converted to changes of the boats' velocities.
 //!
 //! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has
 //! no memory: a snapshot needs none of its state, and boats without contact move identically, bit
@@ -71,7 +71,7 @@ struct Fixed {
 enum Bounds {
     /// A circle: centre and radius.
     Circle(Ned, f64),
-    /// The half-plane behind the line through a point. The unit vector points to its front.
+    /// A half-plane: a point on its edge, and the unit vector that points out of it.
     Behind(Ned, Ned),
 }
 
@@ -106,7 +106,7 @@ pub enum ContactRole {
     Kinematic,
 }
 
-/// A shape near a boat, and the direction in which it would push the boat.
+/// A boat near another shape: their distance, and the line along which they would push each other.
 struct Touch {
     boat: usize,
     distance_m: f64,
@@ -168,8 +168,8 @@ impl ContactModel {
         }
     }
 
-    /// Passes hulls closer than `close_m` to rapier, even where that is unnecessary. The results
-    /// must not change.
+    /// For tests: passes to rapier all hulls within `close_m` of another shape, even where that is
+    /// unnecessary. The results must not change.
     #[doc(hidden)]
     pub fn widen(&mut self, close_m: f64) {
         self.close_m = self.close_m.max(close_m);

@@ -19,8 +19,8 @@ use thiserror::Error;
 /// thrusters. Also, an extrapolated boat must not reach a flag.
 pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
 /// A boat whose last fix is older than this is lost. The margin over [`DEAD_RECKONING_MAX`] makes
-/// one fix per second with the usual delays sufficient. The margin is small, because the boat's
-/// mind no longer knows the position.
+/// one fix per second with the usual delays sufficient. The margin is small, because during that
+/// time the boat's mind does not know its position.
 pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
 
 /// Maximum distance from the datum, m: the limit of scenario files.

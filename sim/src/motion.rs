@@ -9,9 +9,9 @@ use crate::hull::{HullModel, Planar};
 use crate::lanes::{Lanes, where_at_most};
 use primitives::instructions::{Instructions, Kernel};
 
-/// Number of boats in a full row, and in the last row.
-// The four stages of a boat form one chain of dependent operations; processing eight chains side by
-// side takes less than half the time per tick.
+/// Number of boats in a full row, and in a shorter last row.
+// The four stages of a boat's step form one chain of dependent operations; processing eight chains
+// side by side takes less than half the time per tick.
 const MANY: usize = 8;
 const FEW: usize = 4;
 
@@ -20,7 +20,8 @@ const FEW: usize = 4;
 pub struct Forcing<T = f64> {
     /// Velocity through the water at the start.
     pub nu_r: Planar<T>,
-    /// Force on the hull without its own reaction, at the start, half-way and at the end.
+    /// Force on the hull except resistance and inertial terms, at the start, half-way and at the
+    /// end.
     pub tau: [Planar<T>; 3],
     /// The water's own motion half-way (waves and eddies), which affects resistance in addition to
     /// the boat's motion.

@@ -52,7 +52,8 @@ pub(crate) struct RadioState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Line {
     is_bad: bool,
-    /// Messages in transit by direction and ascending arrival. Overtaken messages are dropped.
+    /// Messages in transit in each direction, by ascending arrival time. Overtaken messages are
+    /// dropped.
     orders: VecDeque<Sent<Order>>,
     reports: VecDeque<Sent<OwnBoat>>,
 }

@@ -300,7 +300,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
 #[test]
 fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     // Actions 0 and 8 of Pyquaticus, half a turn at full and at half speed, held from rest: x, y,
-    // speed and heading after a few seconds. To port it is the mirror image.
+    // speed and heading after a few seconds. A turn to port is the mirror image.
     for (boat, speed_m_s, at_s, [x, y, speed, heading_deg]) in [
         (
             "heron",

@@ -53,7 +53,7 @@ pub struct HullWaves {
 }
 
 /// For four components: factors on the cosine and on the sine of the phase, for each of the four
-/// numbers of a line. Over time the phase decreases by ω: (cos)' = ω sin, (sin)' = −ω cos.
+/// numbers of a line. The phase decreases at the rate ω: (cos)' = ω sin, (sin)' = −ω cos.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     /// Surge, sway, decrease of the yaw rate, drift in phase.

@@ -47,7 +47,7 @@ use std::sync::Arc;
 /// Distance of the propellers astern of the midship point, as a fraction of the length.
 const PROPELLER_ASTERN: f64 = 0.4;
 
-/// Large tables shared by size of hull.
+/// Tables, one for each size of hull.
 type Made<const N: usize, T> = Vec<([f64; N], Arc<T>)>;
 
 /// The sea of a game, with tables for each kind of boat. Clones share the tables, which are large.
@@ -334,7 +334,7 @@ impl SeaNow<'_> {
         self.current.at(at)
     }
 
-    /// Height of the water at a place above calm level, m.
+    /// Height of the water surface above calm level at a place, m.
     pub fn elevation_m(&self, at: Ned) -> f64 {
         self.model
             .waves

@@ -68,7 +68,7 @@ impl Submergence {
     }
 }
 
-/// Adds the changes by a row's waves from its coefficients, sines and cosines: port, then
+/// Adds the changes caused by a row of waves, given its coefficients, sines and cosines: port, then
 /// starboard.
 #[inline(always)]
 pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, cos: Lanes<f32>) {

@@ -59,7 +59,7 @@ impl SensorState {
 }
 
 impl SensorModel {
-    /// The sensors of the boat named `vehicle`, read once per tick, with these faults.
+    /// The sensors of the boat named `vehicle`, read every `tick`, with these faults.
     pub fn new(
         sensors: &Sensors,
         tick: SimTime,
@@ -81,7 +81,7 @@ impl SensorModel {
         }
     }
 
-    /// The measurements at `now`. Must be called for every tick from 0, in order.
+    /// The measurements at `now`. Must be called for every multiple of the period from 0, in order.
     pub fn read(&self, state: &mut SensorState, truth: &Truth, now: SimTime) -> Reading {
         let psi_rad = match &self.compass {
             None => truth.pose.psi_rad,

@@ -1,4 +1,4 @@
-//! The quantities that sensors measure, and the code that they share.
+//! The quantities that sensors measure, and code shared by the sensors.
 
 use crate::hull::Planar;
 use crate::sea::Attitude;
