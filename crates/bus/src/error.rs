@@ -26,7 +26,7 @@ pub enum BusError {
         reason: String,
     },
     /// A query got an invalid answer.
-    #[error("the answer at {key} is {reason}")]
+    #[error("invalid answer at {key}: {reason}")]
     Request {
         /// The key of the query.
         key: String,
@@ -46,7 +46,7 @@ pub enum BusError {
     )]
     NeedsToken,
     /// The token belongs to a different game.
-    #[error("wrong token for this game: `squall sim` printed the token when it started")]
+    #[error("wrong token for this game: use the one that `squall sim` printed when it started")]
     WrongToken,
     /// A node answered without proving that it knows this token.
     #[error(

@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Maximum length of a process number, bytes.
 const HOLDER_MAX: u64 = 32;
 
-/// The lock, released when its process ends, for whatever reason.
+/// The lock on a link, which the system releases when the process ends, for whatever reason.
 #[derive(Debug)]
 pub struct LinkLock(
     #[expect(

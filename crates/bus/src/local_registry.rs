@@ -34,7 +34,7 @@ pub struct Entry {
 pub struct GatewayEntry {
     /// The boat's name.
     pub vehicle: String,
-    /// The game that it should join; if unset, the only one running.
+    /// The game that the gateway should join; if unset, the only one running.
     pub game: Option<String>,
     /// The gateway's control port.
     pub control: SocketAddr,

@@ -232,7 +232,7 @@ impl Guard {
         }
     }
 
-    /// Checks a request on `key`. `needs_proof` says whether it needs a proof.
+    /// Checks a request on `key`. `needs_proof` says whether the request needs a proof.
     pub fn check<T: DeserializeOwned>(
         &mut self,
         key: &str,

@@ -78,8 +78,8 @@ impl StopClient {
     /// Adds a path: datagrams to a sim that listens at these endpoints.
     ///
     /// # Errors
-    /// If the system cannot provide a socket or thread. Endpoints of other kinds or with unknown
-    /// hosts are skipped.
+    /// If the system cannot provide a socket or thread. Endpoints that do not use TCP or whose host
+    /// is unknown are skipped.
     pub fn add_hub(
         &self,
         endpoints: &[String],
@@ -169,7 +169,7 @@ impl StopClient {
     }
 
     /// Waits up to `limit` until every stop is done; returns the unfinished ones. Call it after the
-    /// last request. Without a game to name its boats, only the known ones count.
+    /// last request. Without a game that names its boats, only the known boats count.
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
         // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,

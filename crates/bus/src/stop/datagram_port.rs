@@ -1,4 +1,4 @@
-//! A UDP socket, and a thread that reads it until it is dropped.
+//! A UDP socket, and a thread that reads it until the port is dropped.
 
 use super::DATAGRAM_MAX;
 use crate::clock;

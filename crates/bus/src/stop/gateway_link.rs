@@ -250,7 +250,7 @@ impl Connection {
             let Some(asked) = awaited.filter(|_| line.ends_with(b"\n")) else {
                 return Ok(());
             };
-            // This connection proves nothing: requests that need the token use a separate
+            // This connection sends no proofs: requests that need the token use a separate
             // connection.
             match serde_json::from_slice(&line) {
                 Ok(Answer::Answer(OperatorReply {

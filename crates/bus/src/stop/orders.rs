@@ -8,8 +8,8 @@ use super::StopCommand;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
-/// When a stop is repeated, ms after the request: the loss of one then costs little, and repeats
-/// let TCP detect it immediately.
+/// When a stop is sent, ms after the request. At such short intervals, a lost message costs little
+/// time, and the repeats let TCP detect the loss immediately.
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// The interval of later repeats.
 const AGAIN: Duration = Duration::from_millis(200);
@@ -126,8 +126,9 @@ struct Stop {
 pub(super) struct Saying {
     pub(super) number: u64,
     pub(super) command: StopCommand,
-    /// Whether the stop is for all boats and still sent to all.
+    /// Whether the stop is for all boats.
     pub(super) is_of_fleet: bool,
+    /// Whether it is still sent to all boats, even to those that already show it.
     pub(super) to_everybody: bool,
     /// The boats that do not certainly show the stop yet.
     pub(super) boats: Vec<String>,
