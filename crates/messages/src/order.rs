@@ -41,7 +41,9 @@ pub enum BadOrder {
     #[error("a number is not finite")]
     NotFinite,
     /// A number is outside the permitted range.
-    #[error("a number is out of range (speed 0 to 100 m/s, turn -pi to pi rad, thrust -1 to 1)")]
+    #[error(
+        "a number is out of range (heading ±1000 rad, turn ±pi rad, speed 0 to 100 m/s, thrust ±1)"
+    )]
     OutOfRange,
 }
 

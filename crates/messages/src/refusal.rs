@@ -47,7 +47,7 @@ impl Refusal {
         (Refusal::Garbage, "malformed"),
         (Refusal::Version, "from a different version"),
         (Refusal::Ticket, "with an unknown ticket"),
-        (Refusal::WrongTick, "for a different tick"),
+        (Refusal::WrongTick, "out of sequence"),
         (Refusal::NotYours, "about another node's boat"),
         (Refusal::BadNumber, "with a number out of range"),
         (Refusal::Missing, "without an order for a boat"),
@@ -136,7 +136,7 @@ impl Add for Refusals {
 }
 
 impl fmt::Display for Refusals {
-    /// The reasons with non-zero counts: `2 x malformed, 1 x for a different tick`.
+    /// The reasons with non-zero counts: `2 x malformed, 1 x out of sequence`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let occurred = Refusal::ALL
             .iter()
