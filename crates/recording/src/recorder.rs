@@ -85,9 +85,9 @@ impl Recorder {
         let theirs = Arc::clone(&shared);
         let size_of = path.clone();
         let thread = std::thread::Builder::new().name("recorder".to_owned());
-        // The recorder runs in the sim's process. The sim would have to wait for an observer on the
-        // network, or the observer would miss messages. The game passes copies;
-        // `benches/recording.rs` measures the cost.
+        // The recorder runs in the sim's process, not as an observer on the network: the sim would
+        // have to wait for an observer, or the observer would miss messages. The game passes
+        // copies; `benches/recording.rs` measures the cost.
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
         Ok(Recorder {
             path,
@@ -143,7 +143,7 @@ impl Recorder {
         if thread.join().is_err() {
             self.shared
                 .failed
-                .get_or_init(|| "its thread panicked".to_owned());
+                .get_or_init(|| "the recorder's thread panicked".to_owned());
         }
     }
 }
