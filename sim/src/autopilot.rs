@@ -12,7 +12,7 @@ use scenario::boat::Autopilot;
 /// The control loops for one kind of boat.
 #[derive(Clone, Debug)]
 pub struct AutopilotModel {
-    /// Maximum speed, m/s; higher orders are limited to it.
+    /// Maximum speed, m/s; faster orders are reduced to it.
     pub speed_max_m_s: f64,
     yaw_per_rad: f64,
     yaw_per_rad_s: f64,

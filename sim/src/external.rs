@@ -38,7 +38,7 @@ pub enum BadReport {
     Simulated,
     /// A number is outside its plausible range.
     #[error(
-        "a number is non-finite or implausible (limits: position 1000 km, speed 30 m/s, yaw rate 2π rad/s)"
+        "a number is non-finite or implausible (limits: position 1000 km, heading 1000 rad, speed 30 m/s, yaw rate 2π rad/s)"
     )]
     BadNumber,
 }

@@ -117,7 +117,7 @@ impl Lanes<f32> {
         lanes
     }
 
-    /// From numbers for sixteen components: those of one row, repeated four times.
+    /// Takes the numbers of one row from those of sixteen components, and repeats them four times.
     #[inline(always)]
     pub(crate) fn row(&self, row: usize) -> Lanes<f32> {
         let mut repeated = Lanes::splat(0.0);

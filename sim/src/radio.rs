@@ -42,7 +42,7 @@ struct RadioModel {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RadioState {
-    /// The open decision.
+    /// The number of the open decision.
     decision: u64,
     /// Links of the boats, by vehicle index.
     lines: Vec<Line>,

@@ -1,4 +1,4 @@
-//! A team's delayed and noisy sightings of other boats by its own boats, within range and view.
+//! Delayed and noisy sightings of other boats by a team's boats, within range and field of view.
 //!
 //! Used only if the rules limit sharing; otherwise everything is shown at once. A boat reports its
 //! sightings, so over a radio link they are late or lost with the report. The error of a sighting,

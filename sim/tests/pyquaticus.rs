@@ -91,7 +91,7 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         let mut freed_s = 0.0;
         while freed_s == 0.0 && contest.now().as_s() < 120.0 {
             let known = contest.events().len();
-            // Ahead on its present heading, like the actions of Pyquaticus.
+            // Steer ahead on the present heading, like the actions of Pyquaticus.
             step(
                 &mut contest,
                 Order::Turn {

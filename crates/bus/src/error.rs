@@ -69,7 +69,7 @@ pub enum BusError {
     #[error("{0} uses TLS: the game has keys; pass yours with --keys FOLDER (see `squall keys`)")]
     NeedsKeys(String),
     /// The certificate of this node gives no right to this query.
-    #[error("the keys of {identity} do not allow this: use an operator's keys")]
+    #[error("the keys of {identity} do not allow this request: use an operator's keys")]
     NotAllowed {
         /// The identity in the certificate.
         identity: Identity,

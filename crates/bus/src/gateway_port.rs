@@ -49,7 +49,7 @@ fn ask_once(
     deadline: Instant,
 ) -> Result<OperatorReply, BusError> {
     let failed = |e: std::io::Error| BusError::Use {
-        doing: "ask the gateway at",
+        doing: "query the gateway at",
         key: at.to_string(),
         reason: e.to_string(),
     };

@@ -18,8 +18,8 @@ pub const DEFAULT_PORT: u16 = 7447;
 
 /// zenoh's settings for a link. Only zenoh's own messages, such as declarations, wait for a
 /// congested link, for up to 100,000 µs. A link that cannot accept even these is closed. A batch
-/// has up to 64 kB; the queues have space for answers of a megabyte, and for as many urgent
-/// messages as can be requested at once. Messages reassembled from fragments have a size limit.
+/// has up to 64 kB; the queues have space for answers of a megabyte, and for all urgent messages
+/// that may be sent at once. Messages reassembled from fragments have a size limit.
 const LINKS: [(&str, &str); 5] = [
     // zenoh would wait a millisecond for a free slot before dropping a message. It waits in a
     // thread that serves all nodes, so a single stopped observer would slow down all of them.

@@ -113,7 +113,7 @@ impl RosSession {
             .wait();
         queryable
             .map(Declaration::new)
-            .map_err(failed("answer at", &key))
+            .map_err(failed("answer queries at", &key))
     }
 }
 

@@ -240,7 +240,7 @@ impl GatewayCommand {
     }
 }
 
-/// A mission that a boat runs on its own.
+/// A mission that a boat's own controller runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {
     /// Throttle, per cent.

@@ -123,7 +123,7 @@ pub struct OwnBoat {
     pub tag_ready_ns: SimTime,
 }
 
-/// A boat of an opposing team, as known to this one.
+/// A boat of an opposing team, as known to this team.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Vehicle index.

@@ -17,7 +17,7 @@ pub enum Refusal {
     Garbage,
     /// A message from a different version.
     Version,
-    /// A ticket that is unknown or has expired.
+    /// A ticket that is unknown or void.
     Ticket,
     /// Orders for a past or future decision, or a report older than the last one.
     WrongTick,
@@ -27,8 +27,8 @@ pub enum Refusal {
     BadNumber,
     /// An agent gave no order for one of its vehicles. The boat holds.
     Missing,
-    /// Operator requests that do not apply to the game: a change of speed with real boats, or a
-    /// step of a game that is not paused.
+    /// Operator requests that do not apply to the game, such as a change of speed with real boats,
+    /// or a step of a game that is not paused; and published commands that must be queries.
     OutOfPlace,
     /// Messages that arrived faster than they could be read.
     Flood,

@@ -57,7 +57,10 @@ pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
         Element::Integer
     } else {
         return Err(node.wrong(
-            format!("a Cast to {}", data_type_name(to)),
+            format!(
+                "a Cast to {}",
+                data_type_name(to).trim_end_matches(" numbers")
+            ),
             "a Cast to FLOAT or INT64",
         ));
     };

@@ -101,7 +101,7 @@ impl Planner {
             }) => {
                 return Err(node.wrong(
                     format!("integers as input {index}"),
-                    "FLOAT numbers; add a Cast before it",
+                    "FLOAT numbers; add a Cast before the node",
                 ));
             }
             Value::Computed(row) => return Ok(row),

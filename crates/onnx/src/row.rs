@@ -145,7 +145,7 @@ pub(super) fn gather_elements(planner: &mut Planner, node: &Node) -> Result<Valu
         Value::Computed(row) if row.element == Element::Integer => row,
         _ => {
             return Err(node.wrong(
-                "other indices",
+                "constants or floats as indices",
                 "computed integers; use Gather for constant indices",
             ));
         }

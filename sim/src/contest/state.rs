@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// The state of a game: the referee's standing, orders to the boats, and knowledge on shore.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContestState {
-    /// The open decision.
+    /// The number of the open decision.
     pub(super) decision: u64,
     pub(super) standing: Standing,
     /// Orders in force, by vehicle index.

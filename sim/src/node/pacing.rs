@@ -6,7 +6,7 @@ use messages::Control;
 pub(super) struct Pacing {
     /// Whether an operator has paused the game.
     pub(super) is_paused: bool,
-    /// Decisions still to play while paused.
+    /// Number of decisions still to be played while paused.
     steps: u32,
     /// Simulated seconds per second: a target in real time, a limit in lockstep. `None`: unlimited.
     pub(super) speed: Option<f64>,

@@ -291,8 +291,8 @@ impl WaveField {
         }
     }
 
-    /// The same field; it and everything built from it use these instructions. The choice affects
-    /// only how long the computation takes.
+    /// Makes this field, and everything built from it, use these instructions. The choice affects
+    /// only the speed.
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField {
             instructions,
@@ -362,7 +362,7 @@ impl WaveField {
         )
     }
 
-    /// Stokes drift averaged over a hull's draught, m/s. A wave contributes at the depth z a² ω k
+    /// Stokes drift averaged over a hull's draught, m/s. At the depth z, a wave contributes a² ω k
     /// cosh 2k(z + h) / (2 sinh² k h).
     pub fn stokes_drift_m_s(&self, draught_m: f64) -> Ned {
         self.drift_m_s(|w| w.stokes_m_s(draught_m))

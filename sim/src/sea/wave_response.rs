@@ -113,7 +113,7 @@ pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f
     let real = 1.0 - ratio * ratio;
     let imaginary = 2.0 * damping * ratio;
     let size = real * real + imaginary * imaginary;
-    // A damped spring driven by the surface. Usual seas peak at or below half of its natural
+    // A damped spring driven by the surface. Typical seas peak at or below half of its natural
     // frequency, so a hull mostly follows the surface.
     (real / size, imaginary / size)
 }

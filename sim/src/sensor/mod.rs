@@ -81,7 +81,8 @@ impl SensorModel {
         }
     }
 
-    /// The measurements at `now`. Must be called for every multiple of the period from 0, in order.
+    /// The measurements at `now`. Must be called at time 0 and then every `tick` of
+    /// [`SensorModel::new`], in order.
     pub fn read(&self, state: &mut SensorState, truth: &Truth, now: SimTime) -> Reading {
         let psi_rad = match &self.compass {
             None => truth.pose.psi_rad,

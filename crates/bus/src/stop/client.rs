@@ -25,7 +25,7 @@ const GAME_MAX: Duration = Duration::from_secs(3);
 /// Maximum number of control ports.
 const GATEWAYS_MAX: usize = 256;
 
-/// Stops boats. When dropped, it closes its own paths.
+/// Stops boats. Closes its paths when dropped.
 pub struct StopClient(Arc<Shared>);
 
 /// The state shared by the client's threads.

@@ -36,9 +36,9 @@ const NEWS_MAX: usize = 1024;
 /// The known facts about a boat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownBoat {
-    /// The boat's state as a string, if it was heard.
+    /// The boat's last reported state as a string, if any.
     pub state: Option<String>,
-    /// When it was heard last.
+    /// When the boat was last heard, directly or through the sim.
     pub heard: Option<Instant>,
     /// When the boat was last heard directly, not through a copy from the sim.
     heard_itself: Option<Instant>,
@@ -69,8 +69,8 @@ pub enum StopNews {
         /// The kind of stop.
         command: StopCommand,
     },
-    /// The sim has answered a stop of all boats after the given time, or has failed to, for the
-    /// given reason.
+    /// The sim's answer to a stop of all boats: after how long it came, or why the sim refused or
+    /// did not answer.
     Sim(Result<Duration, String>),
     /// The state of a boat has changed.
     State {
@@ -108,7 +108,7 @@ struct Stop {
     asked: Instant,
     /// How often the stop was sent.
     said: usize,
-    /// Boats that show the stop, and whether in an answer to it.
+    /// Boats that show the stop, and whether the report is certainly newer than the stop.
     shown: BTreeMap<String, bool>,
     /// Boats that were in a different state when it was requested, or have been since.
     others: BTreeSet<String>,
