@@ -189,7 +189,7 @@ fn list_in<E: DeserializeOwned>(folder: &Path, kind: &str) -> Vec<E> {
     files.filter_map(|path| live_entry(&path)).collect()
 }
 
-/// The data in every entry.
+/// The part that all entries have in common.
 #[derive(Deserialize)]
 struct Process {
     pid: u32,

@@ -262,7 +262,8 @@ impl Connection {
                         asked,
                     ));
                 }
-                // A different boat's gateway, or a gateway that is not running yet.
+                // A refusal, as from a different boat's gateway, or a challenge, which this
+                // connection does not answer.
                 Ok(_) => {}
                 Err(_) => return Ok(()),
             }
