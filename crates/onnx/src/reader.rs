@@ -263,7 +263,10 @@ fn add(
         return Err(NetworkError::at(
             format!("node `{}`", node::name(proto)),
             format!("the operator {of_domain}{}", shown(&proto.op_type)),
-            format!("one of {}: export the model without it", names.join(", ")),
+            format!(
+                "one of {}: export the model without this operator",
+                names.join(", ")
+            ),
         ));
     };
     let node = Node {
