@@ -29,7 +29,7 @@ const SPARE_M: f64 = 0.05;
 /// Thickness of a wall, and how far it extends beyond the corners, m.
 // Walls are thick, so that no boat is pushed out on the far side within one tick.
 const WALL_M: f64 = 10.0;
-/// Restitution and friction between hulls: fendered fibreglass, wet.
+/// Restitution and friction between hulls of wet fibreglass with fenders.
 const RESTITUTION: f64 = 0.1;
 const FRICTION: f64 = 0.2;
 
@@ -459,7 +459,7 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     }
 }
 
-/// Reads a boat back from rapier's world.
+/// Reads a boat's motion back from rapier's world.
 ///
 /// Uses rapier's impulse rather than its change of velocity: a hull has more mass across than
 /// along, so an oblique push does not move it in the direction of the push. Using the change of

@@ -23,7 +23,7 @@ pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
 /// time the boat's mind does not know its position.
 pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
 
-/// Maximum distance from the datum, m: the limit of scenario files.
+/// Maximum distance north or east of the datum, m: the limit of scenario files.
 const ABSURD_M: f64 = 1e6;
 /// Maximum speed over the ground, m/s: above that of any boat in these games.
 const ABSURD_M_S: f64 = 30.0;
@@ -61,7 +61,7 @@ impl Track {
         self.fix = Some(Fix { nav, at });
     }
 
-    /// Whether the boat has ever reported.
+    /// Whether the boat has ever reported a valid fix.
     pub(crate) fn has_fix(&self) -> bool {
         self.fix.is_some()
     }

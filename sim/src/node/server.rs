@@ -64,7 +64,7 @@ pub(super) struct GameServer<'w> {
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
-    /// Position in the events at the last frame.
+    /// Position in the events when the last frame was built.
     shown: EventCursor,
     /// The last frame built.
     frame: Option<Arc<Frame>>,

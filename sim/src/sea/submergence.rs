@@ -83,7 +83,7 @@ struct Wave {
     amplitude_m: f64,
     pressed_m: f64,
     wavenumber_rad_m: f64,
-    /// The heave transfer function, in phase and lagging.
+    /// The transfer functions of heave, roll and pitch: the parts in phase and lagging.
     heave: (f64, f64),
     roll: (f64, f64),
     pitch: (f64, f64),

@@ -130,7 +130,7 @@ impl WindField {
 }
 
 impl Frozen {
-    /// The grid position of the process `downwind_m` from the datum.
+    /// The grid position of the process `downwind_m` metres downwind of the datum.
     #[inline]
     fn place(&self, downwind_m: f64, now: SimTime) -> f64 {
         place((self.steps_per_s, self.steps_per_m), downwind_m, now)
