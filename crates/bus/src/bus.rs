@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// accept immediately, and senders repeat those that must arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// Stops of boats: sent immediately, before all other messages.
+    /// Stops of boats, and commands and requests: sent immediately, before all other messages.
     Urgent,
     /// All messages sent at every decision.
     Normal,

@@ -33,7 +33,7 @@ pub enum Refusal {
     #[error("{0}")]
     Refused(String),
     /// The sim has a different version of Squall, as described.
-    #[error("different Squall versions: this program is {ours}, {0}", ours = primitives::VERSION)]
+    #[error("different Squall versions (this program is {ours}): {0}", ours = primitives::VERSION)]
     Version(String),
 }
 
@@ -131,7 +131,7 @@ impl<'a> GameSearch<'a> {
 /// One attempt of [`GameSearch::game`]; pass the same `session` to the next attempt.
 ///
 /// # Errors
-/// As [`choose_game`], or if no hub listens there.
+/// As for [`choose_game`], or if no hub listens there.
 pub fn find_game(
     place: &Place,
     named: Option<&GameName>,

@@ -106,11 +106,11 @@ struct Stop {
     target: Option<String>,
     command: StopCommand,
     asked: Instant,
-    /// How often the stop was sent.
+    /// The number of times that the stop was sent.
     said: usize,
     /// Boats that show the stop, and whether the report is certainly newer than the stop.
     shown: BTreeMap<String, bool>,
-    /// Boats that were in a different state when it was requested, or have been since.
+    /// Boats that were in a different state when the stop was requested, or have been since.
     others: BTreeSet<String>,
     /// The sim's answer to a stop of all boats.
     sim: Option<Result<(), String>>,
@@ -128,7 +128,7 @@ pub(super) struct Saying {
     pub(super) command: StopCommand,
     /// Whether the stop is for all boats.
     pub(super) is_of_fleet: bool,
-    /// Whether it is still sent to all boats, even to those that already show it.
+    /// Whether the stop is still sent to all boats, even to those that already show it.
     pub(super) to_everybody: bool,
     /// The boats that do not certainly show the stop yet.
     pub(super) boats: Vec<String>,
