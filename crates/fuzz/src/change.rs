@@ -116,7 +116,7 @@ fn place(bytes: &[u8], dice: &mut Dice) -> Range<usize> {
     from..few.start + after.iter().position(ends).unwrap_or(after.len())
 }
 
-/// Whether a piece begins as a word or as a number.
+/// Whether a piece begins with a letter, and whether it begins with a digit.
 fn kind(piece: &[u8]) -> [bool; 2] {
     [u8::is_ascii_alphabetic, u8::is_ascii_digit].map(|is| piece.first().is_some_and(is))
 }
