@@ -47,7 +47,7 @@ impl Contest {
         if self.is_cut_off(vehicle) {
             return checked.map(drop);
         }
-        // With a radio, the age of an order counts from sending, not from arrival.
+        // Even if a radio delays the order, its age counts from the picture, not from arrival.
         let in_force = &mut self.state.orders[i];
         in_force.given_at = given_at;
         match &mut self.radio {

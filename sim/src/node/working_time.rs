@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-/// A cycle of the sim that takes longer counts as an interruption.
+/// Maximum duration of a cycle of the sim; a longer one counts as an interruption.
 const TURN_MAX: Duration = Duration::from_secs(1);
 /// Time after an interruption for lost links to return. It does not count against other nodes.
 /// zenoh waits at most four seconds between two attempts to connect.

@@ -39,8 +39,8 @@ pub struct WaveSample {
 /// ```
 ///
 /// whose time average is exactly the mean drift force. In long-crested waves it is |sum a sqrt(T)
-/// e^(i theta)|²; in spread waves, the groups determine the magnitude and the mean over the
-/// directions determines the direction.
+/// e^(i theta)|², where a² T is a wave's mean drift force; in spread waves, the groups determine
+/// the magnitude and the mean over the directions determines the direction.
 #[derive(Clone, Debug)]
 pub struct HullWaves {
     instructions: Instructions,
@@ -236,8 +236,8 @@ struct Sums {
     of_sin: Lanes<f32>,
 }
 
-/// The part of [`HullWaves::at`] that computes the sums. Using the sums here would affect register
-/// allocation.
+/// The part of [`HullWaves::at`] that computes the sums. Building the sample here would affect
+/// register allocation.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,

@@ -13,8 +13,8 @@ use primitives::stream::Stream;
 use scenario::sea::{Spreading, Waves};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The frequency band used, in peak frequencies: 99.8 % of the variance and 96 % of its second
-/// moment at γ = 3.3.
+/// The frequency band used, in peak frequencies. At γ = 3.3 it contains 99.8 % of the variance and
+/// 96 % of the second moment.
 pub const BAND: (f64, f64) = (0.5, 5.0);
 
 /// Number of pieces of the curves below.

@@ -77,7 +77,7 @@ impl PlaneWave {
     /// shallow water.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
-        // Beyond this the quotient is 0 to the last bit, and further on the hyperbolic sine
+        // Beyond this the quotient is less than 1e-15, and further on the hyperbolic sine
         // overflows.
         if twice > 40.0 {
             1.0

@@ -186,7 +186,7 @@ struct Sums {
     heave_acceleration: Lanes<f32>,
 }
 
-/// The part of [`WaveResponse::at`] that computes the sums. Using the sums here would affect
+/// The part of [`WaveResponse::at`] that computes the sums. Building the attitude here would affect
 /// register allocation.
 struct At<'a> {
     response: &'a WaveResponse,
