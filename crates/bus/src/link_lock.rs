@@ -46,7 +46,7 @@ impl LinkLock {
     /// Locks the link with this address, as the user typed it.
     ///
     /// # Errors
-    /// [`LinkLockError::Held`] if another process holds it.
+    /// [`LinkLockError`] if another process holds the link, or if the lock file cannot be used.
     pub fn take(link: &str) -> Result<LinkLock, LinkLockError> {
         let failed = |source| LinkLockError::File {
             link: link.to_owned(),

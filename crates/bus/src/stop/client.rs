@@ -152,7 +152,7 @@ impl StopClient {
             .0
             .orders
             .visit(|orders| orders.ask(now, target.map(str::to_owned), command));
-        // The thread sends it: the caller may hold a lock, and sending takes time.
+        // The client's thread sends the stop: the caller may hold a lock, and sending takes time.
         if target.is_none() && command == StopCommand::EStop {
             self.0.ask_sim(number);
         }
@@ -379,7 +379,11 @@ impl Shared {
         });
         if let Err(e) = asked {
             self.orders.visit(|orders| {
-                orders.sim_answered(clock::now(), stop, Err(format!("cannot start thread: {e}")))
+                orders.sim_answered(
+                    clock::now(),
+                    stop,
+                    Err(format!("cannot start a thread: {e}")),
+                )
             });
         }
     }
