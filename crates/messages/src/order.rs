@@ -37,7 +37,7 @@ pub enum Order {
 /// Reason why an order is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadOrder {
-    /// A number in it is NaN or infinite.
+    /// A number is NaN or infinite.
     #[error("a number is not finite")]
     NotFinite,
     /// A number is outside the permitted range.
