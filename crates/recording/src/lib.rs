@@ -1,12 +1,14 @@
 //! Recordings of games and of gateways: MCAP files that ROS 2 tools read as bags.
 //!
-//! | topic of a game | content | form | |---|---|---| | `frame` | the true state, at every decision
-//! | message | | `picture/<team>` | the picture of a team's minds | message | | `inputs` | before
-//! each frame, all inputs of the game since the previous frame: sufficient for a rerun | message |
-//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: navigation, commands, every
-//! byte of the link | message | | `say/<team>`, `policy/<boat>` | messages of minds and policies |
-//! message | | `status/<boat>` | the state of gateways | JSON | | `control`, `run` | operator
-//! requests, and the state of the run | JSON |
+//! | topic of a game | content | form |
+//! |---|---|---|
+//! | `frame` | the true state, at every decision | message |
+//! | `picture/<team>` | the picture of a team's minds | message |
+//! | `inputs` | before each frame, all inputs of the game since the previous frame: sufficient for a rerun | message |
+//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: navigation, commands, every byte of the link | message |
+//! | `say/<team>`, `policy/<boat>` | messages of minds and policies | message |
+//! | `status/<boat>` | the state of gateways | JSON |
+//! | `control`, `run` | operator requests, and the state of the run | JSON |
 //!
 //! | topic of a gateway | content | form |
 //! |---|---|---|

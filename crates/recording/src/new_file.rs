@@ -63,7 +63,7 @@ impl NewFile {
     /// Creates a file with this name in a folder; adds a number if the name is taken.
     ///
     /// # Errors
-    /// As [`NewFile::create`].
+    /// As for [`NewFile::create`].
     pub fn create_numbered(folder: &Path, stem: &str) -> Result<NewFile, RecordError> {
         // Creating the file reserves its name. If the name were only checked, another program could
         // create it in the meantime.

@@ -12,7 +12,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Period of flushes to the system. Each flush closes a chunk, whose index entry (about 500 bytes)
-/// stays in memory until the file ends. With four flushes per second, that was 5 MB an hour.
+/// stays in memory until the file ends. With four flushes per second, that was several megabytes an
+/// hour.
 const FLUSH: Duration = Duration::from_secs(1);
 /// Time for which entries accumulate: waking the thread for each one would cost the game more than
 /// the writing itself.
