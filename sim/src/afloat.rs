@@ -32,8 +32,8 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     for name in names {
         scenario.vehicle_named(name)?;
     }
-    // Compute the start positions of all boats of the game, so that those afloat start where the
-    // game expects them.
+    // Compute the start positions of all boats of the game, so that the selected boats start where
+    // the game expects them.
     let poses = spawn::start_positions(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
@@ -46,7 +46,8 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     // The game's own link already delays the agents' messages; they must not be delayed twice.
     water.link = None;
     water.rules = without_consequences(&scenario.rules);
-    // The values have already been drawn, so the scenario must not be built again from the files.
+    // The random values have already been drawn, so the scenario must not be built again from the
+    // files.
     water.recipe = None;
     Ok(water)
 }

@@ -1,8 +1,9 @@
 //! The front seat: converts an order to settings for the two thrusters.
 //!
 //! A proportional-derivative loop controls the heading; its gains follow from the desired natural
-//! frequency and the hull's inertia and damping. The calibrated resistance plus a
-//! proportional-integral correction control the speed. The available thrust limits both, yaw first.
+//! frequency and the hull's inertia and damping. The speed is controlled by feed-forward of the
+//! calibrated resistance and a proportional-integral correction. If the thrust does not suffice for
+//! both, yaw has priority.
 
 use crate::hull::{HullModel, Planar};
 use crate::thruster::ThrusterModel;
@@ -11,7 +12,7 @@ use scenario::boat::Autopilot;
 /// The control loops for one kind of boat.
 #[derive(Clone, Debug)]
 pub struct AutopilotModel {
-    /// Maximum speed, m/s; higher orders are limited to it.
+    /// Maximum speed, m/s; faster orders are reduced to it.
     pub speed_max_m_s: f64,
     yaw_per_rad: f64,
     yaw_per_rad_s: f64,

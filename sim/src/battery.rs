@@ -41,7 +41,7 @@ impl BatteryModel {
         // Not `powf`, whose last bit differs between platforms.
         let [port, starboard] = shares.map(|share| share * share.sqrt());
         let spent = self.hotel_per_tick + self.full_per_tick * 0.5 * (port + starboard);
-        // An empty battery still supplies power: the loss shows as reduced thrust.
+        // An empty battery still supplies power; it only reduces the thrust.
         *charge = (*charge - spent).max(0.0);
     }
 }

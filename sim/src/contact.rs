@@ -2,8 +2,8 @@
 //!
 //! We integrate surge, sway and yaw ourselves, because a rigid-body engine has one mass for all
 //! directions and a hull with added mass has three. Where hulls may touch, rapier receives the
-//! tick's motion, resolves the contacts and moves the poses. Its changes of velocity are copied
-//! back.
+//! tick's motion, resolves the contacts and moves the poses. The impulses that rapier applied are
+//! converted to changes of the boats' velocities.
 //!
 //! The engine is rebuilt at every use from the boats concerned, in vehicle order. It therefore has
 //! no memory: a snapshot needs none of its state, and boats without contact move identically, bit
@@ -29,7 +29,7 @@ const SPARE_M: f64 = 0.05;
 /// Thickness of a wall, and how far it extends beyond the corners, m.
 // Walls are thick, so that no boat is pushed out on the far side within one tick.
 const WALL_M: f64 = 10.0;
-/// Restitution and friction between hulls: fendered fibreglass, wet.
+/// Restitution and friction between hulls of wet fibreglass with fenders.
 const RESTITUTION: f64 = 0.1;
 const FRICTION: f64 = 0.2;
 
@@ -71,7 +71,7 @@ struct Fixed {
 enum Bounds {
     /// A circle: centre and radius.
     Circle(Ned, f64),
-    /// The half-plane behind the line through a point. The unit vector points to its front.
+    /// A half-plane: a point on its edge, and the unit vector that points out of it.
     Behind(Ned, Ned),
 }
 
@@ -106,7 +106,7 @@ pub enum ContactRole {
     Kinematic,
 }
 
-/// A shape near a boat, and the direction in which it would push the boat.
+/// A boat near another shape: their distance, and the line along which they would push each other.
 struct Touch {
     boat: usize,
     distance_m: f64,
@@ -168,8 +168,8 @@ impl ContactModel {
         }
     }
 
-    /// Passes hulls closer than `close_m` to rapier, even where that is unnecessary. The results
-    /// must not change.
+    /// For tests: passes to rapier all hulls within `close_m` of another shape, even where that is
+    /// unnecessary. The results must not change.
     #[doc(hidden)]
     pub fn widen(&mut self, close_m: f64) {
         self.close_m = self.close_m.max(close_m);
@@ -459,7 +459,7 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     }
 }
 
-/// Reads a boat back from rapier's world.
+/// Reads a boat's motion back from rapier's world.
 ///
 /// Uses rapier's impulse rather than its change of velocity: a hull has more mass across than
 /// along, so an oblique push does not move it in the direction of the push. Using the change of

@@ -19,11 +19,11 @@ use thiserror::Error;
 /// thrusters. Also, an extrapolated boat must not reach a flag.
 pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
 /// A boat whose last fix is older than this is lost. The margin over [`DEAD_RECKONING_MAX`] makes
-/// one fix per second with the usual delays sufficient. The margin is small, because the boat's
-/// mind no longer knows the position.
+/// one fix per second with the usual delays sufficient. The margin is small, because during that
+/// time the boat's mind does not know its position.
 pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
 
-/// Maximum distance from the datum, m: the limit of scenario files.
+/// Maximum distance north or east of the datum, m: the limit of scenario files.
 const ABSURD_M: f64 = 1e6;
 /// Maximum speed over the ground, m/s: above that of any boat in these games.
 const ABSURD_M_S: f64 = 30.0;
@@ -38,7 +38,7 @@ pub enum BadReport {
     Simulated,
     /// A number is outside its plausible range.
     #[error(
-        "a number is non-finite or implausible (limits: position 1000 km, speed 30 m/s, yaw rate 2π rad/s)"
+        "a number is non-finite or implausible (limits: position 1000 km, heading 1000 rad, speed 30 m/s, yaw rate 2π rad/s)"
     )]
     BadNumber,
 }
@@ -61,7 +61,7 @@ impl Track {
         self.fix = Some(Fix { nav, at });
     }
 
-    /// Whether the boat has ever reported.
+    /// Whether the boat has ever reported a valid fix.
     pub(crate) fn has_fix(&self) -> bool {
         self.fix.is_some()
     }

@@ -103,8 +103,8 @@ impl FlawState {
     }
 }
 
-/// Thrust factor of a propeller with this much water above it: 1 from half the still-water depth
-/// on, decreasing linearly to 0 at the surface. The measured loss depends on depth and propeller
+/// Thrust factor of a propeller with this much water above it: 1 at half the still-water depth or
+/// more, decreasing linearly to 0 at the surface. The measured loss depends on depth and propeller
 /// radius (Minsaas, Faltinsen and Persson 1983), but there are no published data for such small
 /// propellers.
 #[inline]

@@ -11,7 +11,8 @@
 //! ```
 //!
 //! Added mass is part of `M`. If it were a force on the right-hand side, computed from the last
-//! acceleration, the equation would diverge once added mass reaches the mass, as it does in sway.
+//! acceleration, the integration would diverge once the added mass reaches the hull's own mass, as
+//! it does in sway.
 
 use primitives::frame::{Body, Ned, Rotation, ned_from_body};
 use scenario::boat::Hull;
@@ -93,8 +94,8 @@ impl HullModel {
             m_yaw,
             m_cross,
             // The full Munk moment applies to a bare hull in ideal flow; with it, the Otter model
-            // spins by itself from 1.2 m/s on. Scaling the moment alone would create energy. The
-            // factor therefore modifies A22 everywhere in the Coriolis terms, which stay
+            // starts to spin by itself at 1.2 m/s. Scaling the moment alone would create energy.
+            // The factor therefore modifies A22 everywhere in the Coriolis terms, which stay
             // skew-symmetric.
             munk_sway: hull.added_surge_kg
                 + hull.munk_factor * (hull.added_sway_kg - hull.added_surge_kg),

@@ -1,8 +1,8 @@
 //! The point boat of MOOS: a throttle, a rudder and two PID loops, without mass.
 //!
 //! The model is uSimMarine with pMarinePID (moos-ivp, `SimEngine::propagate…` and `PIDEngine`) as
-//! implemented in Pyquaticus. Its quirks are kept, because others train on it and we must reproduce
-//! their numbers. For one step of `dt`:
+//! implemented in Pyquaticus. Its quirks are kept, because other projects train policies with it
+//! and we must reproduce their numbers. For one step of `dt`:
 //!
 //! ```text
 //! thrust  += PID_speed(v_wanted - v), or v_wanted * speed_factor;   below 0.01 it is 0
@@ -113,8 +113,8 @@ impl KinematicState {
     }
 
     /// Removes the velocity along the unit vector `out`, in both directions, and turns the boat in
-    /// the direction of the remaining velocity. A boat that moves exactly along `out` has no
-    /// velocity left; it turns to starboard.
+    /// the direction of the remaining velocity. A boat that moves exactly against `out` stops and
+    /// turns to starboard.
     pub fn slide_across(&mut self, out: Ned) {
         let along = Ned {
             north: -out.east,
@@ -158,11 +158,11 @@ impl KinematicModel {
         )
     }
 
-    /// Advances a boat by `dt_s`, with the current `drift_m_s`.
+    /// Advances a boat by `dt_s` in a current of `drift_m_s`.
     ///
-    /// The loops steer a course. For an order of two thrusts (fractions of full), thrust and rudder
-    /// are half their sum and half their difference, and the loops do not run. Hold means speed 0
-    /// on the current heading.
+    /// The loops follow orders of course and speed. For an order of two thrusts (fractions of
+    /// full), the loops do not run: thrust is half the sum of the two, and rudder half their
+    /// difference. Hold means speed 0 on the current heading.
     pub fn step(
         &self,
         state: &mut KinematicState,
@@ -207,8 +207,8 @@ impl KinematicModel {
             }
             Order::Hold => (0.0, 0.0),
         };
-        // pMarinePID supports both a map from speed to thrust and a loop that changes the previous
-        // thrust.
+        // pMarinePID supports both a fixed factor from speed to thrust and a loop that changes the
+        // previous thrust.
         let thrust = if boat.speed_factor > 0.0 {
             wanted_m_s * boat.speed_factor
         } else {

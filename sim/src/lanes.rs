@@ -6,8 +6,8 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// Number of single-precision numbers in the widest registers. As many wave components are computed
-/// side by side.
+/// Number of single-precision numbers in the widest registers. This many wave components are
+/// computed side by side.
 // Crates such as `wide` choose the registers at compile time; with plain arrays the choice is made
 // at run time.
 pub(crate) const LANES: usize = 16;
@@ -16,11 +16,11 @@ pub(crate) const LANES: usize = 16;
 /// components, so that the additions do not wait for each other.
 pub(crate) const ROW: usize = 4;
 
-/// Rows side by side, or the number of values for each component of a row.
+/// Number of rows side by side, or number of quantities for each component of a row.
 pub(crate) const FOLD: usize = LANES / ROW;
 
 /// Numbers side by side. Sixteen lanes hold one number for each of sixteen components, or four
-/// numbers for each component of a row, ordered by number.
+/// quantities for each of the four components of a row, grouped by quantity.
 #[derive(Clone, Copy, Debug)]
 // Aligned to a cache line, the width of the widest registers: loads never straddle two lines.
 #[repr(align(64))]
@@ -110,14 +110,14 @@ pub(crate) fn where_at_most<const N: usize>(
 }
 
 impl Lanes<f32> {
-    /// Four numbers for each component of a row.
+    /// Four quantities for each component of a row.
     pub(crate) fn of_row(numbers: [[f32; ROW]; FOLD]) -> Lanes<f32> {
         let mut lanes = Lanes::splat(0.0);
         lanes.0.copy_from_slice(numbers.as_flattened());
         lanes
     }
 
-    /// The numbers of one row from those of sixteen components, repeated four times.
+    /// Takes the numbers of one row from those of sixteen components, and repeats them four times.
     #[inline(always)]
     pub(crate) fn row(&self, row: usize) -> Lanes<f32> {
         let mut repeated = Lanes::splat(0.0);
@@ -127,7 +127,8 @@ impl Lanes<f32> {
         repeated
     }
 
-    /// The sum of one of the four numbers over the components of a row, always in the same order.
+    /// The sum of one of the four quantities over the components of a row, always in the same
+    /// order.
     #[inline(always)]
     pub(crate) fn sum(&self, number: usize) -> f64 {
         let at = |place: usize| f64::from(self.0[ROW * number + place]);

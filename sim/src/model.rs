@@ -31,7 +31,7 @@ pub(crate) struct Model {
     pub(crate) kinds: Vec<usize>,
     /// Whether each vehicle is a real boat, by vehicle index.
     external: Vec<bool>,
-    /// Index among the point boats, if it is one, by vehicle index.
+    /// By vehicle index: the index of a point boat among the point boats.
     points: Vec<Option<usize>>,
     /// The sensors of each vehicle, if any, with its index among the vehicles with sensors.
     pub(crate) sensed: Vec<Option<(usize, SensorModel)>>,
@@ -441,8 +441,8 @@ fn settings(
     }
 }
 
-/// The rotation by the small angle of half a tick. The series is accurate to the last digit and
-/// much faster.
+/// The rotation by the small angle turned in half a tick. The series is accurate to the last digit
+/// and much faster than sine and cosine.
 #[inline]
 fn small_rotation(by_rad: f64) -> Rotation {
     let square = by_rad * by_rad;

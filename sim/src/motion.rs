@@ -9,9 +9,9 @@ use crate::hull::{HullModel, Planar};
 use crate::lanes::{Lanes, where_at_most};
 use primitives::instructions::{Instructions, Kernel};
 
-/// Number of boats in a full row, and in the last row.
-// The four stages of a boat form one chain of dependent operations; processing eight chains side by
-// side takes less than half the time per tick.
+/// Number of boats in a full row, and in a shorter last row.
+// The four stages of a boat's step form one chain of dependent operations; processing eight chains
+// side by side takes less than half the time per tick.
 const MANY: usize = 8;
 const FEW: usize = 4;
 
@@ -20,7 +20,8 @@ const FEW: usize = 4;
 pub struct Forcing<T = f64> {
     /// Velocity through the water at the start.
     pub nu_r: Planar<T>,
-    /// Force on the hull without its own reaction, at the start, half-way and at the end.
+    /// Force on the hull except resistance and inertial terms, at the start, half-way and at the
+    /// end.
     pub tau: [Planar<T>; 3],
     /// The water's own motion half-way (waves and eddies), which affects resistance in addition to
     /// the boat's motion.
@@ -344,10 +345,10 @@ impl<const N: usize> Row<N> {
 
     /// Cross-flow drag in sway and yaw (strip theory): ½ρ C_d T ∫ [1, x] |v + x r| (v + x r) dx.
     ///
-    /// The integral is computed in closed form rather than strip by strip. Let s = r L/2 be the
-    /// cross-flow that the turn adds at the bow. If |s| ≤ |v|, the flow has one sign along the hull
-    /// and the integrand is a polynomial; if |s| > |v|, the sign changes at x = −v/r, where two
-    /// polynomials meet.
+    /// The integral is computed in closed form: a sum over strips would be slower and depend on
+    /// their number. Let s = r L/2 be the cross-flow that the turn adds at the bow. If |s| ≤ |v|,
+    /// the flow has one sign along the hull and the integrand is a polynomial; if |s| > |v|, the
+    /// sign changes at x = −v/r, where two polynomials meet.
     #[inline(always)]
     fn crossflow(&self, v: Lanes<f64, N>, r: Lanes<f64, N>) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let number = Lanes::<f64, N>::splat;
@@ -358,7 +359,6 @@ impl<const N: usize> Row<N> {
         let half_2 = half * half;
         let same_side = (s.abs(), v.abs());
         let from = v / where_at_most(same_side, number(1.0), r);
-        // Strips would be slower, and the result would depend on their number.
         let side = self.crossflow.with_signs_of(where_at_most(same_side, v, r));
         let sway = where_at_most(
             same_side,

@@ -1,5 +1,5 @@
-//! Progress messages of a running game: shown on the terminal, and printed by a sim as one line of
-//! JSON each for `squall run`. The last message is the report of the game.
+//! Progress messages of a running game, shown on the terminal. For `squall run`, a sim prints each
+//! as a line of JSON. The last message is the report of the game.
 
 use crate::contest::Contest;
 use messages::refusal::Refusals;
@@ -61,7 +61,7 @@ pub struct Run {
     /// Boats whose competition entry failed to decide.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub entry_faults: Vec<EntryFaults>,
-    /// The fault of the recording, if any.
+    /// Why the recording is incomplete or missing, if it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording_problem: Option<String>,
 }

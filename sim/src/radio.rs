@@ -42,7 +42,7 @@ struct RadioModel {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RadioState {
-    /// The open decision.
+    /// The number of the open decision.
     decision: u64,
     /// Links of the boats, by vehicle index.
     lines: Vec<Line>,
@@ -52,7 +52,8 @@ pub(crate) struct RadioState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Line {
     is_bad: bool,
-    /// Messages in transit by direction and ascending arrival. Overtaken messages are dropped.
+    /// Messages in transit in each direction, by ascending arrival time. Overtaken messages are
+    /// dropped.
     orders: VecDeque<Sent<Order>>,
     reports: VecDeque<Sent<OwnBoat>>,
 }

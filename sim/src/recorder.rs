@@ -1,4 +1,4 @@
-//! Records a running game from its first decision, over the network or in this process.
+//! Records a running game, networked or in this process, from its first decision.
 
 use crate::contest::Contest;
 use crate::progress::Report;
@@ -24,7 +24,7 @@ pub struct GameRecorder {
     pace: String,
     commit: String,
     stage: Stage,
-    /// Whether pictures are recorded as messages sent over the network.
+    /// Whether pictures are sent over the network, and recorded as sent.
     pictures_are_sent: bool,
 }
 

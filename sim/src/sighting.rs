@@ -1,4 +1,4 @@
-//! A team's delayed and noisy sightings of other boats by its own boats, within range and view.
+//! Delayed and noisy sightings of other boats by a team's boats, within range and field of view.
 //!
 //! Used only if the rules limit sharing; otherwise everything is shown at once. A boat reports its
 //! sightings, so over a radio link they are late or lost with the report. The error of a sighting,
@@ -159,8 +159,8 @@ fn sees(sharing: &Sharing, own: &Contact, other: &Contact) -> bool {
 }
 
 fn blurred(sharing: &Sharing, seen: Contact, noise: Noise, draw: u64) -> Contact {
-    // A pair uses the uniform numbers at twice its count: the offset keeps these apart from those
-    // that are used directly.
+    // A normal pair uses the uniform numbers at twice its index; the offset keeps them apart from
+    // those that are used directly.
     let (north, east) = noise.normal_pair(draw / 2 + (1 << 60));
     let (velocity_north, velocity_east) = noise.normal_pair(draw / 2 + 1 + (1 << 60));
     Contact {

@@ -24,7 +24,7 @@ pub struct ThrusterModel {
     pub newton_min: f64,
     /// Maximum change of the commanded setting per tick.
     slew: f64,
-    /// Commands below this have no effect.
+    /// Commands of a smaller magnitude have no effect.
     deadband: f64,
     /// Remaining fraction of a difference after half a tick and after a full tick.
     lag: (f64, f64),

@@ -213,10 +213,10 @@ impl World {
         }
     }
 
-    /// Sets boats back to the edge of the circle (centre, radius in m) that a vehicle at its
-    /// position must stay out of, if any. A hull loses its inward velocity. A point boat behaves as
-    /// in Pyquaticus: it returns to its point of entry and continues along the circle with the
-    /// remaining velocity. A real boat is not moved.
+    /// Sets boats back to the edge of circles that they must stay out of. `circle` returns the
+    /// circle (centre, radius in m), if any, for a vehicle at a position. A hull loses its inward
+    /// velocity. A point boat behaves as in Pyquaticus: it returns to its point of entry and
+    /// continues along the circle with the remaining velocity. A real boat is not moved.
     pub fn set_back(&mut self, circle: impl Fn(VehicleId, Ned) -> Option<(Ned, f64)>) {
         let World { model, state, work } = self;
         let mut moved = false;
@@ -381,7 +381,7 @@ impl World {
         self.work.pairs.extend_from_slice(pairs);
     }
 
-    /// Every boat's motion over the tick without contact.
+    /// Computes every boat's motion over the tick without contact.
     fn drive(&mut self, commands: &[Order]) {
         let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
@@ -448,7 +448,8 @@ impl World {
         }
     }
 
-    /// Applies the motion and its changes by contact. Contains non-finite states.
+    /// Applies the motion and its changes by contact. Quarantines boats whose state is no longer
+    /// finite.
     fn settle(&mut self) {
         let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);

@@ -60,8 +60,8 @@ fn in_calm_the_error_falls_with_the_fourth_power_of_the_tick() {
 
 #[test]
 fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
-    // Waves are evaluated half-way through the tick, wind at its start; both are held over the
-    // tick.
+    // Waves are evaluated half-way through the tick, wind at its start; both are held constant over
+    // the tick.
     let in_waves = gains(|sea| sea.waves = Some(waves(0.3, 2.5, 0.5)));
     assert!(
         in_waves.iter().flatten().all(|gain| *gain > 3.5),
@@ -91,9 +91,9 @@ fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
 #[test]
 fn whatever_water_a_hull_carries_along_it_stays_stable_in_a_gale() {
     // Added mass of three times the boat's own mass or moment of inertia, in each direction and in
-    // all. Applied as a force computed from the last acceleration, it would diverge even if it only
-    // equalled the boat's own. Waves may carry a boat along, but no faster than the crests of a
-    // gale.
+    // all. If added mass were a force computed from the last acceleration, the motion would diverge
+    // even with added mass equal to the boat's own. Waves may carry a boat along, but no faster
+    // than the crests of a gale.
     for (surge, sway, yaw) in [
         (3.0, 1.0, 1.0),
         (0.1, 3.0, 1.0),

@@ -138,7 +138,7 @@ fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     let mut world = afloat(&scenario, 1, start, (2.5, 0.0, 0.0));
     let mut least_m = f64::INFINITY;
     for _ in 0..600 {
-        // The front seat keeps its initial heading.
+        // The front seat keeps the boat on its initial heading.
         let heading_rad = primitives::angle::rad_from_compass_deg(start.2);
         world.step(&[
             Order::Steer {
@@ -195,8 +195,8 @@ fn a_boat_stops_in_the_bay_of_a_mole() {
     let mole = Obstacle::Polygon {
         corners: corners.collect(),
     };
-    // Into the bay, as far as its end; no penetration into the end of an arm, or from behind or the
-    // side.
+    // A boat may enter the bay up to its end. It must not penetrate the end of an arm, the back or
+    // a side.
     for (start, east_m, north_m) in [
         ((90.0, 100.0, 90.0), (108.9, 109.2), (97.0, 103.0)),
         ((90.0, 104.0, 90.0), (98.0, 130.0), (103.0, 130.0)),

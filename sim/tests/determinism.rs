@@ -11,7 +11,7 @@ use rules::event::{EventCursor, Logged};
 use scenario::{Scenario, StartPosition};
 use sim::{Contest, RestoreError, World};
 
-/// Makes the game lively with orders that depend only on time and vehicle, and plays a decision.
+/// Plays a decision with lively orders that depend only on time and vehicle.
 fn play(contest: &mut Contest) {
     contest.pictures();
     let middle = contest.scenario().field.middle();

@@ -180,7 +180,7 @@ fn it_takes_thrust_and_rudder_from_outside_as_the_reference_does() {
 
 const BOATS: [&str; 3] = ["heron", "surveyor", "large_usv"];
 
-/// Compares to the printed precision of the reference: half of the last digit.
+/// Compares within the printed precision of the reference: half a unit of the last digit.
 fn compare(name: &str, what: &str, got: &[f64]) {
     let begin = format!("{name},{what},");
     let line = include_str!("kinematic/manoeuvres.csv")

@@ -13,7 +13,7 @@ use sim::Contest;
 const BLUE: VehicleId = VehicleId(0);
 const RED: VehicleId = VehicleId(1);
 
-/// Bursts with both kinds of loss.
+/// Losses in both the good and the bad state of a link.
 const BURSTS: Loss = Loss {
     good: 0.1,
     bad: 0.8,

@@ -1,5 +1,5 @@
-//! Orders in a contest: how long they are in force, and that a recording contains everything on
-//! which that depends.
+//! Orders in a contest: how long they are in force, and that a recording contains everything that
+//! determines this.
 
 mod common;
 
@@ -134,8 +134,8 @@ fn a_game_with_silent_agents_is_played_again_from_its_recording() {
     };
     assert!(again(&recorded).snapshot() == contest.snapshot());
 
-    // Before orders carried a time, they were in force from arrival until they were recorded as
-    // held.
+    // Before orders carried a time, they were in force from arrival until the next order or a
+    // recorded hold.
     let old = Inputs {
         stamp: Stamp {
             version: 1,

@@ -165,7 +165,7 @@ fn it_spins_on_the_spot_under_opposed_shafts() {
     );
     assert!((0.0..0.4).contains(&u) && v.abs() < 0.1, "{u} {v}");
 
-    // Equal thrust astern and ahead: it turns about a fixed point.
+    // With equal thrust astern and ahead, the boat turns about a fixed point.
     let astern = -70.0 * (0.01108_f64 / 0.006445).sqrt();
     let (_, mut world) = from_rest([70.0, astern], 60);
     let mut around = || {

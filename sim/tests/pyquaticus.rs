@@ -91,7 +91,7 @@ fn a_boat_that_leaves_at_the_side_comes_back_as_soon_as_in_the_competition() {
         let mut freed_s = 0.0;
         while freed_s == 0.0 && contest.now().as_s() < 120.0 {
             let known = contest.events().len();
-            // Ahead on its present heading, like the actions of Pyquaticus.
+            // Steer ahead on the present heading, like the actions of Pyquaticus.
             step(
                 &mut contest,
                 Order::Turn {
@@ -300,7 +300,7 @@ fn boats_pass_through_each_other_where_the_rules_say_so() {
 #[test]
 fn half_a_turn_is_an_order_of_its_own_to_either_side() {
     // Actions 0 and 8 of Pyquaticus, half a turn at full and at half speed, held from rest: x, y,
-    // speed and heading after a few seconds. To port it is the mirror image.
+    // speed and heading after a few seconds. A turn to port is the mirror image.
     for (boat, speed_m_s, at_s, [x, y, speed, heading_deg]) in [
         (
             "heron",

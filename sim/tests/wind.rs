@@ -1,4 +1,5 @@
-//! The wind compared with its formulas, and its force with Fossen's and the closed-form drift.
+//! The wind compared with its formulas, and its force with Fossen's formulas and the closed-form
+//! drift.
 
 mod common;
 

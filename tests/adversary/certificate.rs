@@ -369,7 +369,7 @@ fn an_agents_certificate_cannot_serve_a_game() {
     );
     let refused = agent(&endpoint, &sim, &own.path().join("team-red"), &FOUR[2..]).refusal();
     assert!(
-        refused.contains("the sim's certificate is refused"),
+        refused.contains("rejects the sim's certificate"),
         "{refused}"
     );
     drop(shown);

@@ -6,8 +6,8 @@
 //! and reports. Without keys, all other nodes have the same rights; with keys, each has the rights
 //! of its role.
 //!
-//! Topics that the hub forwards are spelled out here, so that nodes cannot invent any. zenoh 1.10
-//! would panic, and kill the sim, if it had to send a key longer than 65535 bytes.
+//! Topics that the hub forwards are spelled out here, so that nodes cannot invent others. zenoh
+//! 1.10 would panic, and kill the sim, if it had to send a key longer than 65535 bytes.
 
 use crate::keys::Identity;
 use messages::topic::{self, GameName};
@@ -166,11 +166,11 @@ struct Subject {
 }
 
 impl Subject {
-    /// Topics that match these patterns.
+    /// The topics for these patterns: one for each team or boat.
     fn keys(&self, game: &GameName, patterns: &[&str]) -> Vec<String> {
         // A rule that denies `frame` does not deny `*`, although `*` includes `frame`; a rule that
-        // allows `order/*` does not allow `**`. Therefore all rules allow, and none has a wildcard
-        // in the outgoing direction.
+        // allows `order/*` does not allow `**`. Therefore all rules allow, and those for outgoing
+        // messages have no wildcards.
         let spelled_out = |pattern: &&str| -> Vec<String> {
             if pattern.contains("{team}") {
                 self.teams

@@ -6,7 +6,7 @@
 //! descriptors, the listener only tries to accept and closes none of its connections, so it would
 //! never recover. When descriptors run short, the port is closed briefly and the reserved
 //! descriptors are lent to connections already accepted. The listener then has nothing more to
-//! accept, and closes the ended ones.
+//! accept, and closes the connections that have ended.
 
 use crate::descriptor::{self, Ends, Kind};
 use crate::open_files::OpenFiles;
@@ -131,8 +131,8 @@ impl Port {
             .map(|(ends, it)| (*ends, *it))
             .filter(|it| is_lent(it.1))
             .collect();
-        // Lent descriptors return before the port opens, because the next flood needs them. A node
-        // whose link holds one has to reconnect.
+        // Lent descriptors are taken back before the port opens, because the next flood needs them.
+        // A node whose link holds one has to reconnect.
         let are_too_many = lent.len() as u64 > self.files.kept() / 4;
         self.close(free < self.files.kept() / 2 || are_too_many);
         let goes = |ends: &Ends| self.is_closed && (are_too_many || !links.contains(ends));

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// accept immediately, and senders repeat those that must arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// Stops of boats: sent immediately, before all other messages.
+    /// Stops of boats, and commands and requests: sent immediately, before all other messages.
     Urgent,
     /// All messages sent at every decision.
     Normal,
@@ -84,7 +84,7 @@ impl Bus {
     /// Connects to a hub.
     ///
     /// # Errors
-    /// [`BusError`] if no hub listens there.
+    /// [`BusError`] if no hub responds there, or if it does not accept this node's keys.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
         runtime()
             .open_leaf(net)
@@ -179,8 +179,8 @@ impl Bus {
         })
     }
 
-    /// Calls `receive` with the key of every node under `key` that appears (`true`) or leaves,
-    /// starting with the nodes already present.
+    /// Calls `receive` with the key of every liveliness token under `key` that appears (`true`) or
+    /// disappears, starting with the tokens already present.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -210,7 +210,7 @@ impl Publisher {
         self.0.is_heard()
     }
 
-    /// Sends a per-tick message as CDR, with its name and version in the encoding.
+    /// Sends a message as CDR, with its name and version in the encoding.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -218,7 +218,7 @@ impl Publisher {
         self.send_encoded::<M>(codec::encode(message))
     }
 
-    /// Sends a per-tick message that is already encoded as CDR.
+    /// Sends a message that is already encoded as CDR.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.

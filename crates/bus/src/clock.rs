@@ -15,7 +15,7 @@ pub fn since(start: Instant) -> Duration {
 }
 
 /// How long this machine has been suspended since boot, which [`now`] does not count: on Linux, the
-/// boot-time clock minus the monotonic one.
+/// boot-time clock minus the monotonic one; on other systems, always zero.
 pub fn suspended() -> Duration {
     runtime().suspended()
 }
@@ -25,7 +25,8 @@ pub fn rest(time: Duration) {
     runtime().sleep(time);
 }
 
-/// The current time since 1970, ns, for other systems that need it. Squall never compares it.
+/// The wall-clock time since 1970, ns, for other programs that need it. Squall never compares such
+/// times.
 pub fn unix_ns() -> i64 {
     i64::try_from(time::OffsetDateTime::now_utc().unix_timestamp_nanos()).unwrap_or(i64::MAX)
 }

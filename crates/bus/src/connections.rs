@@ -43,8 +43,9 @@ impl Connections {
         }
     }
 
-    /// Takes a slot for a connection from this address; `close` ends the connection. If no slot is
-    /// free, it evicts the least recently used connection of the address with the most connections.
+    /// Takes a slot for a connection from this address. If no slot is free, evicts the least
+    /// recently used connection of the address with the most connections. `close` ends the new
+    /// connection, when it is itself evicted or all connections are closed.
     pub fn admit(&self, from: IpAddr, close: impl FnOnce() + Send + 'static) -> Slot {
         let mut open = self.open.lock();
         let mut surplus = Vec::new();

@@ -21,7 +21,7 @@ type Answered = Watched<Option<Result<ControlReply, BusError>>>;
 ///
 /// # Errors
 /// [`BusError`] if the sim refuses or does not respond (gateways may still have received a stop),
-/// if it requires an unknown token, or if the session is closed.
+/// if it requires a token that this node lacks, or if the session is closed.
 ///
 /// # Panics
 /// Never: every control can be encoded as JSON.

@@ -75,7 +75,8 @@ pub(crate) fn with_socket<T>(descriptor: RawFd, change: impl FnOnce(&SockRef<'_>
     change(&SockRef::from(&borrowed))
 }
 
-/// Ends a connection if the descriptor still belongs to it; the owner notices and closes it.
+/// Ends a connection if the descriptor still belongs to it. The owner notices this and closes the
+/// descriptor.
 pub(crate) fn end(descriptor: RawFd, ends: Ends) {
     // A duplicate keeps referring to the same socket, even if the owner closes the descriptor.
     let Ok(duplicate) = borrow(descriptor).try_clone_to_owned() else {

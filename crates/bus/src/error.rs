@@ -26,7 +26,7 @@ pub enum BusError {
         reason: String,
     },
     /// A query got an invalid answer.
-    #[error("the answer at {key} is {reason}")]
+    #[error("invalid answer at {key}: {reason}")]
     Request {
         /// The key of the query.
         key: String,
@@ -46,7 +46,7 @@ pub enum BusError {
     )]
     NeedsToken,
     /// The token belongs to a different game.
-    #[error("wrong token for this game: `squall sim` printed the token when it started")]
+    #[error("wrong token for this game: use the one that `squall sim` printed when it started")]
     WrongToken,
     /// A node answered without proving that it knows this token.
     #[error(
@@ -69,7 +69,7 @@ pub enum BusError {
     #[error("{0} uses TLS: the game has keys; pass yours with --keys FOLDER (see `squall keys`)")]
     NeedsKeys(String),
     /// The certificate of this node gives no right to this query.
-    #[error("the keys of {identity} do not allow this: use an operator's keys")]
+    #[error("the keys of {identity} do not allow this request: use an operator's keys")]
     NotAllowed {
         /// The identity in the certificate.
         identity: Identity,

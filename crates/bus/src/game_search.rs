@@ -33,7 +33,7 @@ pub enum Refusal {
     #[error("{0}")]
     Refused(String),
     /// The sim has a different version of Squall, as described.
-    #[error("different versions: this program is {ours}, {0}", ours = primitives::VERSION)]
+    #[error("different Squall versions (this program is {ours}): {0}", ours = primitives::VERSION)]
     Version(String),
 }
 
@@ -128,10 +128,10 @@ impl<'a> GameSearch<'a> {
     }
 }
 
-/// One attempt of [`GameSearch::game`]; the next attempt gets the same `session`.
+/// One attempt of [`GameSearch::game`]; pass the same `session` to the next attempt.
 ///
 /// # Errors
-/// As [`choose_game`], or if no hub listens there.
+/// As for [`choose_game`], or if no hub listens there.
 pub fn find_game(
     place: &Place,
     named: Option<&GameName>,
@@ -165,7 +165,10 @@ fn only_game(bus: &Bus) -> Result<GameName, Missing> {
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim found on the network".to_owned())),
         several => {
-            let message = format!("select one with --game: {}", listed(several));
+            let message = format!(
+                "several games are running; select one with --game: {}",
+                listed(several)
+            );
             Err(Missing::Forever(Refusal::Refused(message)))
         }
     }
@@ -238,10 +241,10 @@ pub struct Joined {
     pub asked: Instant,
 }
 
-/// Joins in this role with these vehicles, with the token from `place`.
+/// Joins the game in this role for these vehicles, with the token from `place`.
 ///
 /// # Errors
-/// [`Missing`] if the sim does not reply or refuses, or if another node has a vehicle.
+/// [`Missing`] if the sim does not reply or refuses, or if another node has one of the vehicles.
 pub fn join(
     bus: &Bus,
     place: &Place,
@@ -253,8 +256,8 @@ pub fn join(
     // answer that never comes.
     check_keys(bus, scenario, role, vehicles)?;
     let bus = bus.clone().with_token(place.net(Some(game))?.token);
-    // Tell the sim the identifier of the node's session, so that it can act as soon as that link
-    // ends. A killed process closes its socket, and its boats hold in the same decision.
+    // Tell the sim the identifier of the node's session, so that it can act as soon as the node's
+    // link ends. A killed process closes its socket, and its boats hold in the same decision.
     let version = primitives::VERSION.to_owned();
     let node = bus.id();
     let asked = clock::now();

@@ -1,5 +1,5 @@
 //! Queries to a gateway at its own control port, with or without a game: lines of JSON over TCP.
-//! Each is a request or an answer in the network's format (see `token`).
+//! Each line is a request or an answer in the network's format (see `token`).
 
 use crate::{BusError, Token, clock, token};
 use messages::external::{GatewayCommand, OperatorReply};
@@ -17,7 +17,8 @@ const ATTEMPTS: usize = 3;
 /// Queries the gateway whose control port is `at`, within `limit`.
 ///
 /// # Errors
-/// [`BusError`] if it cannot be reached or does not respond, or if it requires an unknown token.
+/// [`BusError`] if it cannot be reached or does not respond, or if it requires a token that this
+/// node lacks.
 pub fn ask_gateway(
     at: SocketAddr,
     token: Option<&Token>,
@@ -48,7 +49,7 @@ fn ask_once(
     deadline: Instant,
 ) -> Result<OperatorReply, BusError> {
     let failed = |e: std::io::Error| BusError::Use {
-        doing: "ask the gateway at",
+        doing: "query the gateway at",
         key: at.to_string(),
         reason: e.to_string(),
     };

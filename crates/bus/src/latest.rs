@@ -27,8 +27,8 @@ impl<T> Latest<T> {
         });
     }
 
-    /// Waits up to `limit` for an item, then empties all cells and returns their items by cell. All
-    /// `None` means a timeout.
+    /// Waits up to `limit` for an item, then empties all cells and returns their items by cell.
+    /// After a timeout, all are `None`.
     pub fn take(&self, limit: Duration) -> Vec<Option<T>> {
         self.0
             .wait(limit, |cells| cells.iter().any(Option::is_some));

@@ -48,7 +48,7 @@ fn disable_for(link: &Link) {
 }
 
 /// Disables the option on a descriptor if it is the socket between these two addresses. The socket
-/// stays open, because zenoh holds its link during the report.
+/// stays open, because zenoh holds its link during the callback.
 fn disable_if(descriptor: RawFd, ends: Ends) {
     if matches!(descriptor::kind(descriptor), Kind::Connection(found) if found == ends) {
         // Errors are ignored: a closed socket has no linger time. The option is disabled rather

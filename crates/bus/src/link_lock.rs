@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Maximum length of a process number, bytes.
 const HOLDER_MAX: u64 = 32;
 
-/// The lock, released when its process ends, for whatever reason.
+/// The lock on a link, which the system releases when the process ends, for whatever reason.
 #[derive(Debug)]
 pub struct LinkLock(
     #[expect(
@@ -46,7 +46,7 @@ impl LinkLock {
     /// Locks the link with this address, as the user typed it.
     ///
     /// # Errors
-    /// [`LinkLockError::Held`] if another process holds it.
+    /// [`LinkLockError`] if another process holds the link, or if the lock file cannot be used.
     pub fn take(link: &str) -> Result<LinkLock, LinkLockError> {
         let failed = |source| LinkLockError::File {
             link: link.to_owned(),

@@ -34,7 +34,7 @@ pub struct Entry {
 pub struct GatewayEntry {
     /// The boat's name.
     pub vehicle: String,
-    /// The game that it should join; if unset, the only one running.
+    /// The game that the gateway should join; if unset, the only one running.
     pub game: Option<String>,
     /// The gateway's control port.
     pub control: SocketAddr,
@@ -189,7 +189,7 @@ fn list_in<E: DeserializeOwned>(folder: &Path, kind: &str) -> Vec<E> {
     files.filter_map(|path| live_entry(&path)).collect()
 }
 
-/// The data in every entry.
+/// The part that all entries have in common.
 #[derive(Deserialize)]
 struct Process {
     pid: u32,

@@ -16,10 +16,10 @@ use zenoh::Config;
 /// The default port of a hub, if free.
 pub const DEFAULT_PORT: u16 = 7447;
 
-/// zenoh's settings for a link. Only zenoh's own messages, such as declarations, wait briefly for a
-/// congested link (in µs); a link that cannot accept even these is closed. A batch has up to 64 kB;
-/// the queues have space for answers of a megabyte, and for as many urgent messages as can be
-/// requested at once. Messages reassembled from fragments have a size limit.
+/// zenoh's settings for a link. Only zenoh's own messages, such as declarations, wait for a
+/// congested link, for up to 100,000 µs. A link that cannot accept even these is closed. A batch
+/// has up to 64 kB; the queues have space for answers of a megabyte, and for all urgent messages
+/// that may be sent at once. Messages reassembled from fragments have a size limit.
 const LINKS: [(&str, &str); 5] = [
     // zenoh would wait a millisecond for a free slot before dropping a message. It waits in a
     // thread that serves all nodes, so a single stopped observer would slow down all of them.
@@ -55,8 +55,8 @@ fn queue_for(boats: usize) -> usize {
 
 /// How a hub treats messages from other nodes. All are dropped if they would have to wait for their
 /// outgoing link. An answer inherits the settings of its query. The longest answers need the
-/// priority `data_low`, because only its queue has space for them: a scenario with a network has
-/// 216 kB.
+/// priority `data_low`, because only its queue has space for them: a scenario with a neural network
+/// has 216 kB.
 fn qos(game: &GameName) -> String {
     let long = [
         topic::scenario(game),
@@ -77,8 +77,8 @@ const MESSAGE_MAX: usize = 1 << 21;
 const QUESTION_MAX: usize = 1 << 16;
 const PUBLISHED_MAX: usize = 1 << 18;
 const ACCEPT_MS: usize = 5000;
-/// Maximum number of nodes linked to a hub, with as many pending, if the process may open four
-/// times as many files.
+/// Maximum number of nodes linked to a hub, and of pending connections, if the process may open
+/// four times as many files.
 const NODES_MAX: usize = 1000;
 pub(crate) const FILES_MAX: u64 = 4 * NODES_MAX as u64;
 

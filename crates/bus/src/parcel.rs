@@ -1,5 +1,5 @@
-//! A parcel: the content of a query or an answer, with the seal of an answer, which proves that the
-//! answering node knows the game's token.
+//! A parcel: the content of a query or an answer. The seal of an answer proves that the answering
+//! node knows the game's token.
 //!
 //! Without keys, any node may declare that it answers at the topic of a boat. A query therefore
 //! goes to all such nodes, with a nonce as its attachment. The attachment of an answer is the

@@ -37,7 +37,8 @@ impl Bus {
     }
 
     /// Queries `key`, where only the sim may answer; returns its answer if it arrives within
-    /// `limit`. Answers have the lowest priority, and a congested link drops them.
+    /// `limit`. Query and answer have a lower priority than all published messages, and a congested
+    /// link drops them.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.

@@ -26,8 +26,8 @@ pub struct RosSession {
 pub struct RosPublisher(ZenohSender);
 
 impl RosSession {
-    /// Connects to the router at `endpoint` as a client. If none is running on this machine, acts
-    /// as the router.
+    /// Connects to the router at `endpoint` as a client. If the endpoint is on this machine and no
+    /// router responds there, acts as the router.
     ///
     /// # Errors
     /// [`BusError`] if the router is elsewhere and does not respond, if its port belongs to a
@@ -41,9 +41,9 @@ impl RosSession {
         let open = |mut config: zenoh::Config| {
             // A decision's messages follow each other closely. While one is being written, zenoh's
             // sender waits up to two milliseconds for it; with this setting, less than one. The
-            // median from the sim to a subscriber of all topics is 0.5 ms instead of 0.7 ms.
-            // (Sending the messages as `express` was tried, but it overflowed the queue of batches,
-            // and most were lost.)
+            // median latency from the sim to a subscriber of all topics is 0.5 ms instead of 0.7
+            // ms. (Sending the messages as `express` was tried, but it overflowed the queue of
+            // batches, and most were lost.)
             set(
                 &mut config,
                 "transport/link/tx/queue/batching/time_limit",
@@ -113,7 +113,7 @@ impl RosSession {
             .wait();
         queryable
             .map(Declaration::new)
-            .map_err(failed("answer at", &key))
+            .map_err(failed("answer queries at", &key))
     }
 }
 

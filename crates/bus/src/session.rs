@@ -41,8 +41,8 @@ pub enum Encoding {
     Bytes,
 }
 
-/// A session. Callbacks run on its threads and must only pass data on. All methods fail if the
-/// session is closed.
+/// A session. Callbacks run on its threads and must only pass data on. All methods that return a
+/// result fail if the session is closed.
 #[expect(clippy::missing_errors_doc, reason = "all for the same reason")]
 pub trait Session: Send + Sync {
     /// The session's identifier, unique on the network.

@@ -1,8 +1,8 @@
 //! The token of a game, which grants the right to join, control and operate.
 //!
 //! It is never sent. A request that needs it is answered with a challenge, a number used once. The
-//! request is then repeated with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the
-//! challenge, the key and the request as sent, each preceded by its length as 64 bits,
+//! request is then repeated with an HMAC-SHA256 (RFC 2104, FIPS 180-4) under the token. It covers
+//! the challenge, the key and the request as sent, each preceded by its length as 64 bits,
 //! little-endian.
 
 use crate::{BusError, clock, random_bytes};
@@ -58,8 +58,8 @@ impl Token {
         let mut mac = Hmac::<Sha256>::new_from_slice(&self.0).expect("a key of any length will do");
         for part in parts {
             // Include the length, so that different lists of parts cannot encode to the same bytes.
-            // A password in a message could be read and reused; a number used once with a MAC under
-            // the secret cannot.
+            // A password in a message could be read and reused; the MAC of a challenge cannot be
+            // reused.
             mac.update(&(part.len() as u64).to_le_bytes());
             mac.update(part);
         }
@@ -232,7 +232,7 @@ impl Guard {
         }
     }
 
-    /// Checks a request on `key`. `needs_proof` says whether it needs a proof.
+    /// Checks a request on `key`. `needs_proof` says whether the request needs a proof.
     pub fn check<T: DeserializeOwned>(
         &mut self,
         key: &str,

@@ -171,7 +171,7 @@ impl Session for ZenohSession {
             .wait();
         queryable
             .map(Declaration::new)
-            .map_err(failed("answer at", &key))
+            .map_err(failed("answer queries at", &key))
     }
 
     fn ask(
@@ -200,7 +200,7 @@ impl Session for ZenohSession {
             .congestion_control(CongestionControl::Drop)
             .priority(priority)
             .express(true);
-        let replies = query.wait().map_err(failed("ask at", key))?;
+        let replies = query.wait().map_err(failed("query", key))?;
         let answers =
             std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
         let mut parcels =
@@ -257,7 +257,7 @@ impl Session for ZenohSession {
             .get(key)
             .timeout(limit)
             .wait()
-            .map_err(failed("look for", key))?;
+            .map_err(failed("search for", key))?;
         let tokens =
             std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
         let mut keys: Vec<String> = tokens

@@ -10,9 +10,9 @@ pub const RUNTIME_VARIABLE: &str = "ZENOH_RUNTIME";
 
 /// A value of [`RUNTIME_VARIABLE`] for a process that is one node: few threads in place of zenoh's
 /// pools, which shortens a lockstep round trip by a quarter to a half. Reception has its own
-/// thread: a hub that forwards a large message waits in it for a free slot at the sender, which
-/// then needs a second thread. Accepting links also has its own thread: a link that is never
-/// completed is closed with its linger time enabled.
+/// thread: a hub that forwards a large message waits in that thread for a free slot in the sending
+/// queue, which another thread must empty. Accepting links also has its own thread: a link that is
+/// never completed is closed with its linger time enabled, which may block the thread.
 pub const RUNTIME: &str =
     // One pool of two threads was tried for everything. When a hub forwarded an answer of half a
     // megabyte, both threads waited for a free slot in the sender's queue, the sender had no thread
@@ -24,7 +24,7 @@ pub const RUNTIME: &str =
 /// link has data: each peer that sends without pause occupies one thread, and an E-stop needs a
 /// free one. In lockstep, where a second thread costs time, all boats are simulated.
 pub const HUB_RUNTIME: &str =
-    // Measured with 250 E-stops under 400,000 messages of garbage a second: 12.4 ms (median) to 124
+    // Measured with 250 E-stops, during 400,000 garbage messages a second: 12.4 ms (median) to 124
     // ms with one receiving thread, less than 0.1 ms to 6.6 ms with two.
     "(rx:(worker_threads:4),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
@@ -38,8 +38,8 @@ pub(crate) const KEYS_RUNTIME: &str =
     "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
 /// Restarts this program in the same process, with the same arguments and the threads required for
-/// a node with keys. Returns immediately if it already has these. Call it before anything else: the
-/// restart discards all state of the process.
+/// a node with keys. Returns immediately if the process already has them. Call it before anything
+/// else: the restart discards all state of the process.
 ///
 /// # Errors
 /// [`BusError::Threads`] if the program cannot be restarted.

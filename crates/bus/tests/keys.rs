@@ -155,7 +155,7 @@ fn keys_that_are_over_or_no_keys_are_refused_before_anything_is_opened() {
         "{text}"
     );
     for (file, damaged, want) in [
-        ("key.pem", "", "key.pem: has no private key in PEM"),
+        ("key.pem", "", "key.pem: contains no PEM private key"),
         (
             "certificate.pem",
             "-----BEGIN CERTIFICATE-----\n!\n-----END CERTIFICATE-----\n",
@@ -164,12 +164,12 @@ fn keys_that_are_over_or_no_keys_are_refused_before_anything_is_opened() {
         (
             "certificate.pem",
             "hello",
-            "certificate.pem: has no certificate in PEM",
+            "certificate.pem: contains no PEM certificate",
         ),
         (
             "authority.pem",
             "",
-            "authority.pem: has no certificate in PEM",
+            "authority.pem: contains no PEM certificate",
         ),
     ] {
         let folder = own.path().join("team-red");
@@ -270,7 +270,7 @@ const HEARD: [(&str, &str); 9] = [
         "team-blue team-red gateway gateway-red_one observer operator",
     ),
 ];
-/// Topics that others publish, and whose messages the sim receives.
+/// Topics that other nodes publish, and the nodes whose messages the sim receives.
 const PUBLISHED: [(&str, &str); 17] = [
     ("order/blue/x", "team-blue"),
     ("order/red/x", "team-red"),
@@ -293,7 +293,7 @@ const PUBLISHED: [(&str, &str); 17] = [
     ("run", ""),
     ("released", ""),
 ];
-/// Keys that others query, and the nodes that the sim answers.
+/// Keys that other nodes query, and the nodes that the sim answers.
 const ASKED: [(&str, &str); 11] = [
     (
         "scenario",

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Maximum length of a mutated input, bytes.
 const LENGTH_MAX: usize = 1 << 20;
 
-/// Edge-case numbers in the notation of TOML, JSON or CSV, words that mean something to a reader,
+/// Edge-case numbers in the notation of TOML, JSON or CSV, words with a meaning in these formats,
 /// and characters that end a string or control a terminal when printed.
 const WORDS: [&str; 28] = [
     "0",
@@ -59,7 +59,7 @@ const NUMBERS: [u64; 16] = [
     f64::MIN_POSITIVE.to_bits(),
 ];
 
-/// An input with a few mutations, some of them with pieces of others.
+/// Mutates an input a few times, sometimes with pieces of other inputs.
 pub fn change(input: &[u8], others: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = input.to_vec();
     // Usually few, so that mutated inputs pass the first check.
@@ -116,13 +116,13 @@ fn place(bytes: &[u8], dice: &mut Dice) -> Range<usize> {
     from..few.start + after.iter().position(ends).unwrap_or(after.len())
 }
 
-/// Whether a piece begins as a word or as a number.
+/// Whether a piece begins with a letter, and whether it begins with a digit.
 fn kind(piece: &[u8]) -> [bool; 2] {
     [u8::is_ascii_alphabetic, u8::is_ascii_digit].map(|is| piece.first().is_some_and(is))
 }
 
-/// Overwrites a random place with as much of a piece as fits. Numbers lie at multiples of their
-/// size after the four bytes of the encapsulation, or anywhere.
+/// Overwrites a random place with as much of a piece as fits. Usually this is where a message has
+/// numbers: at a multiple of their size after the four bytes of the encapsulation.
 fn put(bytes: &mut [u8], piece: &[u8], dice: &mut Dice) {
     let step = match dice.roll(4) {
         0 => 1,

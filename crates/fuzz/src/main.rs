@@ -7,9 +7,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 const USAGE: &str = "\
-squall-fuzz soak [--seconds N] [--seed N] [--jobs N] [TARGET…]   run all or these targets for N seconds each (20), N at a time (1)
-squall-fuzz play TARGET FILE                                     check one input
-squall-fuzz seeds FOLDER                                         write real inputs, one folder per target";
+squall-fuzz soak [OPTIONS] [TARGET…]   fuzz these targets, or all
+    --seconds N                        seconds for each target (default: 20)
+    --seed N                           random seed (default: different in each run)
+    --jobs N                           number of targets at a time (default: 1)
+squall-fuzz play TARGET FILE           check one input
+squall-fuzz seeds FOLDER               write real inputs, one folder per target";
 
 /// The command that runs this program.
 const COMMAND: &str =

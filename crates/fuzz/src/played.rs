@@ -25,7 +25,7 @@ pub fn scenario(name: &str) -> Scenario {
     scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A game between two teams of two boats, one of them real.
+/// A game between two teams of two boats each, one real and one simulated.
 pub fn mixed() -> Scenario {
     scenario("mixed_2v2")
 }

@@ -36,7 +36,8 @@ pub struct NavReport {
 pub struct ExternalOrder {
     /// Time and decision of the game.
     pub stamp: Stamp,
-    /// Time of the picture that the agent answered. It advances while the agent decides.
+    /// Time of the picture that the agent answered. It advances only as long as the agent answers
+    /// new pictures.
     pub given_ns: SimTime,
     /// The order, limited by the referee.
     pub order: VehicleOrder,
@@ -239,7 +240,7 @@ impl GatewayCommand {
     }
 }
 
-/// A mission that a boat runs on its own.
+/// A mission that a boat's own controller runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {
     /// Throttle, per cent.
@@ -305,7 +306,7 @@ pub struct GatewayStatus {
     /// Age of voltage and charge, s; absent in earlier versions.
     #[serde(default)]
     pub battery_age_s: Option<f64>,
-    /// The last sentence sent.
+    /// The last sentence sent to the boat.
     pub last_sent: String,
     /// In a dry run, the last sentence that would have been sent. The gateway sends standby
     /// instead.

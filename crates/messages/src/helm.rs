@@ -127,7 +127,7 @@ pub struct PolicyReport {
 }
 
 impl PolicyReport {
-    /// Labels the inputs and the discrete actions with their probabilities, most probable first.
+    /// Labels the inputs, and the discrete actions with their probabilities, most probable first.
     /// Empty if the scenario lacks the model.
     pub fn words(&self, scenario: &Scenario, vehicle: VehicleId) -> PolicyWords {
         let Some(model) = scenario
@@ -179,7 +179,7 @@ pub struct VariableReport {
 pub struct FunctionReport {
     /// The behaviour that produced it.
     pub behaviour: String,
-    /// The contact concerned.
+    /// The contact that the function is about, if any.
     pub contact: Option<VehicleId>,
     /// The function's weight.
     pub weight: f64,

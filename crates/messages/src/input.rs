@@ -108,7 +108,7 @@ pub struct InputRecord {
     pub vehicle: i32,
     /// Time of a report's fix or of the picture that an order answers, ns.
     pub at_ns: SimTime,
-    /// The arguments of the kind.
+    /// The arguments, which depend on the kind.
     pub numbers: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Per-tick wire messages: one struct per topic, matching `msg/*.msg`.
+//! The high-rate wire messages: one struct per topic, matching `msg/*.msg`.
 //!
 //! The structs use only ROS 2 types (fixed-width numbers, lists, nested messages), so tools with
 //! the `.msg` files can decode our bytes. `-1` means "none". The low-rate control plane
@@ -308,9 +308,9 @@ pub enum Control {
     Resume,
     /// In a paused game, plays one decision.
     Step,
-    /// Limits the speed to this many simulated seconds per second; `None` removes the limit. A
-    /// lockstep game plays no faster than that, a real-time game at exactly that speed. A game with
-    /// real boats keeps its pace.
+    /// Limits the speed to this many simulated seconds per second; `None` removes the limit, in
+    /// lockstep only. A lockstep game plays no faster than that, a real-time game at exactly that
+    /// speed. A game with real boats keeps its pace.
     Speed(Option<f64>),
     /// Makes all boats hold while the game continues.
     Halt,

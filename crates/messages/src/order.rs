@@ -37,11 +37,13 @@ pub enum Order {
 /// Reason why an order is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadOrder {
-    /// A number in it is NaN or infinite.
+    /// A number is NaN or infinite.
     #[error("a number is not finite")]
     NotFinite,
     /// A number is outside the permitted range.
-    #[error("a number is out of range (speed 0 to 100 m/s, turn -pi to pi rad, thrust -1 to 1)")]
+    #[error(
+        "a number is out of range (heading ±1000 rad, turn ±pi rad, speed 0 to 100 m/s, thrust ±1)"
+    )]
     OutOfRange,
 }
 

@@ -26,7 +26,8 @@ pub struct Picture {
     pub flags: Vec<FlagView>,
     /// Points, by team.
     pub score: Vec<u32>,
-    /// Events of the team's boats and flags since the previous picture.
+    /// Events since the previous picture that involve the team's boats or flag, and the end of the
+    /// game.
     pub events: Vec<EventRecord>,
     /// Whether the game is over.
     pub over: bool,
@@ -123,7 +124,7 @@ pub struct OwnBoat {
     pub tag_ready_ns: SimTime,
 }
 
-/// A boat of an opposing team, as known to this one.
+/// A boat of an opposing team, as known to this team.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Vehicle index.

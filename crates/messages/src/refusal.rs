@@ -17,7 +17,7 @@ pub enum Refusal {
     Garbage,
     /// A message from a different version.
     Version,
-    /// A ticket that is unknown or has expired.
+    /// A ticket that is unknown or void.
     Ticket,
     /// Orders for a past or future decision, or a report older than the last one.
     WrongTick,
@@ -27,8 +27,8 @@ pub enum Refusal {
     BadNumber,
     /// An agent gave no order for one of its vehicles. The boat holds.
     Missing,
-    /// Operator requests that do not apply to the game: a change of speed with real boats, or a
-    /// step of a game that is not paused.
+    /// Operator requests that do not apply to the game, such as a change of speed with real boats,
+    /// or a step of a game that is not paused; and published commands that must be queries.
     OutOfPlace,
     /// Messages that arrived faster than they could be read.
     Flood,
@@ -47,7 +47,7 @@ impl Refusal {
         (Refusal::Garbage, "malformed"),
         (Refusal::Version, "from a different version"),
         (Refusal::Ticket, "with an unknown ticket"),
-        (Refusal::WrongTick, "for a different tick"),
+        (Refusal::WrongTick, "out of sequence"),
         (Refusal::NotYours, "about another node's boat"),
         (Refusal::BadNumber, "with a number out of range"),
         (Refusal::Missing, "without an order for a boat"),
@@ -136,7 +136,7 @@ impl Add for Refusals {
 }
 
 impl fmt::Display for Refusals {
-    /// The reasons with non-zero counts: `2 x malformed, 1 x for a different tick`.
+    /// The reasons with non-zero counts: `2 x malformed, 1 x out of sequence`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let occurred = Refusal::ALL
             .iter()

@@ -1,6 +1,6 @@
 //! The `.msg` definitions, with which tools decode our messages.
 
-/// Name and content of every definition, by name.
+/// Name and content of every definition, sorted by name.
 pub const DEFINITIONS: [(&str, &str); 21] = [
     ("Contact", include_str!("../msg/Contact.msg")),
     ("EventRecord", include_str!("../msg/EventRecord.msg")),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The waves of a game, which add up.
+/// The waves of a game. The elevation of the water is their sum.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Water {
     /// The waves; empty in calm water.

@@ -57,7 +57,10 @@ pub(super) fn cast(planner: &mut Planner, node: &Node) -> Result<Value, NetworkE
         Element::Integer
     } else {
         return Err(node.wrong(
-            format!("a Cast to {}", data_type_name(to)),
+            format!(
+                "a Cast to {}",
+                data_type_name(to).trim_end_matches(" numbers")
+            ),
             "a Cast to FLOAT or INT64",
         ));
     };
@@ -147,7 +150,7 @@ pub(super) fn squeeze(planner: &mut Planner, node: &Node) -> Result<Value, Netwo
     if shape.iter().zip(&keeps).any(is_left_out) {
         return Err(node.wrong(
             format!("axes of {} that are not 1", shape_text(shape)),
-            "axes of 1",
+            "axes of length 1",
         ));
     }
     let shape = shape
@@ -332,7 +335,7 @@ pub(super) fn gather(planner: &mut Planner, node: &Node) -> Result<Value, Networ
         Ok(at) if at < length => Ok(at),
         _ => Err(node.wrong(
             format!("index {index}"),
-            format!("an index of {length} numbers"),
+            format!("an index into {length} numbers"),
         )),
     };
     let selected = integers

@@ -195,7 +195,7 @@ fn pairs(left: &[f32], right: &[f32], output: &mut [f32], operation: impl Fn(f32
     }
 }
 
-/// Squares, used by normalisations, are computed as exact products.
+/// Squares, which normalisations use, are computed as products rather than with `powf`.
 fn power(base: f32, exponent: f32) -> f32 {
     if exponent == 2.0 {
         base * base
@@ -377,7 +377,7 @@ pub(super) fn combine(
 }
 
 /// The memory of numbers that, repeated, fill this shape: the row's own if its shape, without
-/// leading ones, is a suffix of that shape; otherwise an expanded copy.
+/// leading dimensions of 1, is a suffix of that shape; otherwise an expanded copy.
 fn repeatable(
     planner: &mut Planner,
     row: Row,

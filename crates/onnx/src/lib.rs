@@ -116,7 +116,7 @@ impl Network {
         }
     }
 
-    /// Output number `index` in the last evaluation.
+    /// Output number `index` of the last evaluation.
     ///
     /// # Panics
     /// If `index` is out of range.

@@ -7,7 +7,7 @@ use super::node::Node;
 use super::plan::{Planner, Row, Value, floats};
 use super::step::Work;
 
-/// Outputs summed in parallel, in registers.
+/// Number of outputs summed in parallel, in registers.
 const LANES: usize = 16;
 
 /// A weight matrix and a bias, laid out for evaluation.
@@ -18,9 +18,9 @@ const LANES: usize = 16;
 pub(super) struct Linear {
     inputs: usize,
     outputs: usize,
-    /// A group's weights, by group of outputs and by input.
+    /// The weights of a group of outputs for one input, by group and by input.
     weights: Vec<[f32; LANES]>,
-    /// By group of outputs.
+    /// The biases, by group of outputs.
     biases: Vec<[f32; LANES]>,
 }
 

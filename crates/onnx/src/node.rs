@@ -130,10 +130,7 @@ impl<'a> Node<'a> {
     pub(super) fn axis(&self, axis: i64, rank: usize) -> Result<usize, NetworkError> {
         match usize::try_from(from_start(axis, rank)) {
             Ok(axis) if axis < rank => Ok(axis),
-            _ => Err(self.wrong(
-                format!("axis {axis}"),
-                format!("an axis of {rank} dimensions"),
-            )),
+            _ => Err(self.wrong(format!("axis {axis}"), format!("one of {rank} axes"))),
         }
     }
 }

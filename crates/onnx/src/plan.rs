@@ -101,7 +101,7 @@ impl Planner {
             }) => {
                 return Err(node.wrong(
                     format!("integers as input {index}"),
-                    "FLOAT numbers; add a Cast before it",
+                    "FLOAT numbers; add a Cast before the node",
                 ));
             }
             Value::Computed(row) => return Ok(row),
@@ -141,7 +141,7 @@ impl Planner {
         {
             return Err(node.wrong(
                 format!("the integer {large}"),
-                format!("at most {INTEGER_MAX}"),
+                format!("a magnitude of at most {INTEGER_MAX}"),
             ));
         }
         let floats: Vec<f32> = integers.iter().map(|integer| *integer as f32).collect();
@@ -211,7 +211,7 @@ impl Planner {
     }
 
     /// Evaluates the steps from number `first` on, which read only constants, and removes them and
-    /// their values from the plan.
+    /// their values from the plan. Returns the result as a constant.
     pub(super) fn fold(
         &mut self,
         first: usize,
@@ -309,7 +309,7 @@ impl Planner {
         Ok(start..end)
     }
 
-    /// Counts weights, each multiplied by `rows` numbers.
+    /// Counts weights, each of which is multiplied by `rows` numbers in an evaluation.
     pub(super) fn count_weights(
         &mut self,
         weights: Option<usize>,
@@ -323,7 +323,7 @@ impl Planner {
         Ok(())
     }
 
-    /// The value of an output as numbers that can be read.
+    /// The value of an output, in a place from which it can be read.
     pub(super) fn output(&mut self, name: &str) -> Result<Row, NetworkError> {
         match self.known.get(name).cloned() {
             Some(Value::Computed(row)) => Ok(row),

@@ -16,7 +16,7 @@ use std::ops::{Range, RangeInclusive};
 use xxhash_rust::xxh3::xxh3_128;
 
 /// Operator set versions with the implemented semantics. Before 7, attributes controlled
-/// broadcasting. The last is from ONNX 1.23; later semantics are unknown.
+/// broadcasting. The last version is that of ONNX 1.23; later semantics are unknown.
 const VERSIONS: RangeInclusive<i64> = 7..=28;
 
 /// The beginning of a Git LFS pointer, which replaces a large model in a repository checked out
@@ -263,7 +263,10 @@ fn add(
         return Err(NetworkError::at(
             format!("node `{}`", node::name(proto)),
             format!("the operator {of_domain}{}", shown(&proto.op_type)),
-            format!("one of {}: export the model without it", names.join(", ")),
+            format!(
+                "one of {}: export the model without this operator",
+                names.join(", ")
+            ),
         ));
     };
     let node = Node {

@@ -1,4 +1,5 @@
-//! Operators along the last dimension: Softmax, LogSoftmax and ArgMax.
+//! Operators on rows of numbers: Softmax, LogSoftmax, ArgMax, GatherElements and the `Reduce…`
+//! operators.
 
 use super::NetworkError;
 use super::arrangement;
@@ -145,7 +146,7 @@ pub(super) fn gather_elements(planner: &mut Planner, node: &Node) -> Result<Valu
         Value::Computed(row) if row.element == Element::Integer => row,
         _ => {
             return Err(node.wrong(
-                "other indices",
+                "constants or floats as indices",
                 "computed integers; use Gather for constant indices",
             ));
         }
@@ -221,7 +222,7 @@ impl Reduction {
 }
 
 impl Scale {
-    /// Softmax of each row. The maximum is subtracted first to prevent overflow.
+    /// Softmax of each row, or its logarithm. The maximum is subtracted first to prevent overflow.
     pub(super) fn apply(self, row_size: usize, input: &[f32], output: &mut [f32]) {
         for (to, from) in output
             .chunks_exact_mut(row_size)

@@ -31,8 +31,8 @@ pub(super) enum Work {
         reduction: Reduction,
         row_size: usize,
     },
-    /// Copies blocks of `size` numbers to the output, starting at an offset and a fixed distance
-    /// apart.
+    /// Copies blocks of `size` numbers to the output, a fixed distance apart, starting at an
+    /// offset.
     Spread {
         size: usize,
         offset: usize,

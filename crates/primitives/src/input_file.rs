@@ -68,8 +68,8 @@ pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
         .map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
 }
 
-/// Converts a file's content to UTF-8. Some Windows programs save "Unicode text" as UTF-16 with a
-/// byte order mark.
+/// Converts UTF-16 content with a byte order mark, which some Windows programs save as "Unicode
+/// text", to UTF-8. Returns all other content unchanged.
 ///
 /// # Errors
 /// If UTF-16 content is invalid.

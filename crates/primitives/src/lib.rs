@@ -1,7 +1,7 @@
 //! Foundations of all crates: angles, frames, time, IDs, random streams, byte encoding.
 //!
-//! Every number in the simulation comes from [`math`] and [`stream`], so that the same seed gives
-//! the same bits on every machine.
+//! Every transcendental function and every random number in the simulation comes from [`math`] or
+//! [`stream`], so that the same seed gives the same bits on every machine.
 
 pub mod angle;
 pub mod codec;
@@ -23,5 +23,5 @@ pub use frame::{Body, LatLon, Leg, Ned, Pose, Rotation};
 pub use id::{FlagId, TeamId, VehicleId};
 pub use time::SimTime;
 
-/// The version of Squall, which every node reports on joining a game.
+/// The version of Squall, which every node reports when it joins a game.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -2,9 +2,8 @@
 //! (2000), with layer and position drawn from different bits (Doornik 2005).
 //!
 //! The bell curve is covered by 256 layers of equal area. In 98 of 100 draws, a table look-up and a
-//! comparison yield the number; only draws beyond the curve's edge need an exponential. It is
-//! implemented here because every tick draws dozens of numbers, and a library may change its
-//! algorithm for the same seed.
+//! comparison yield the number; only the others need an exponential. It is implemented here because
+//! every tick draws dozens of numbers, and a library may change its algorithm for the same seed.
 
 use std::sync::LazyLock;
 

@@ -34,7 +34,7 @@ pub fn create(path: &Path) -> Result<File, Error> {
 /// Writes a whole file.
 ///
 /// # Errors
-/// As [`create`].
+/// As for [`create`].
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Error> {
     create(path)?.write_all(bytes.as_ref())
 }

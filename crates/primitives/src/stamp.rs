@@ -1,9 +1,9 @@
-//! The common first field of per-tick messages, and their trait.
+//! The common first field of high-rate messages, and their trait.
 
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
-/// A per-tick message: named and versioned.
+/// A high-rate message: named and versioned.
 pub trait Message {
     /// The ROS 2 name of the message, used in `Encoding`.
     const SCHEMA: &'static str;
@@ -19,7 +19,7 @@ pub trait Message {
 pub struct Stamp {
     /// Simulated time for which the content is valid, ns.
     pub valid_ns: SimTime,
-    /// Decision tick, counted from 0.
+    /// Number of the decision, counted from 0; in gateways' reports, a sequence number.
     pub seq: u64,
     /// Version of the message's layout.
     pub version: u8,

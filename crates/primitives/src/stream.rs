@@ -68,8 +68,8 @@ impl Stream {
 
 /// Stateless noise: a random number for every count.
 ///
-/// For draws at every tick: a world reset to an earlier tick draws the same numbers again. The
-/// mixing function is the finaliser of SplitMix64 (Steele, Lea and Flood 2014), applied to a
+/// Use it for draws at every tick: a world reset to an earlier tick draws the same numbers again.
+/// The mixing function is the finaliser of SplitMix64 (Steele, Lea and Flood 2014), applied to a
 /// counter that starts at a key derived from seed and name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Noise(u64);

@@ -48,7 +48,7 @@ pub fn is_log(path: &Path) -> bool {
         .is_ok_and(|()| start == MAGIC)
 }
 
-/// The game in these logs. If `is_known`, it is the game of this scenario; otherwise the scenario's
+/// The game in these logs. If `is_known`, `game` is the scenario of the logged game; otherwise its
 /// boats and field are replaced with the logged boats and a field around their tracks.
 ///
 /// # Errors
@@ -91,7 +91,7 @@ pub fn add(logs: &mut Logs, path: &Path) -> Result<(), RecordingError> {
         let (Ok(time_s), false) = (time.parse::<f64>(), value.is_empty()) else {
             continue;
         };
-        let start_s = start_s.ok_or_else(|| wrong("no LOGSTART above it".to_owned()))?;
+        let start_s = start_s.ok_or_else(|| wrong("no LOGSTART line above this one".to_owned()))?;
         let row = (start_s + time_s, key, value);
         if let Some((_, quantity, source)) = OWN.iter().find(|(own, ..)| *own == key) {
             let value = number(value).map_err(wrong)?;
@@ -228,7 +228,10 @@ mod tests {
     #[test]
     fn errors_name_file_and_line() {
         for (text, want) in [
-            ("1.0 NAV_X p 1\n", "0.txt:2: no LOGSTART above it"),
+            (
+                "1.0 NAV_X p 1\n",
+                "0.txt:2: no LOGSTART line above this one",
+            ),
             (
                 "%% LOGSTART 1\n1 NAV_X p east\n",
                 "0.txt:3: \"east\" is not a number",

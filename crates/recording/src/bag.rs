@@ -44,7 +44,7 @@ pub enum RecordingError {
         found: Kind,
     },
     /// The recording was made by a different version, whose messages may differ in meaning.
-    #[error("recorded by Squall {found}; this is {ours}", ours = primitives::VERSION)]
+    #[error("recorded by Squall {found}; this program is {ours}", ours = primitives::VERSION)]
     Version {
         /// The recorder's version.
         found: String,
@@ -101,7 +101,7 @@ struct Channel {
     topic: String,
     /// The schema of CDR messages; `None` for JSON.
     schema: Option<String>,
-    /// Whether the message is JSON in a string message.
+    /// Whether the messages are JSON wrapped in string messages.
     is_json: bool,
 }
 

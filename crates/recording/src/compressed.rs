@@ -73,7 +73,7 @@ fn compression(source: &Source, chunk: &Range<u64>) -> Result<String, RecordingE
     })
 }
 
-/// Appends a chunk, decompressed, as a chunk without compression.
+/// Decompresses a chunk and appends it as a chunk without compression.
 fn expand(
     source: &Source,
     chunk: &Range<u64>,

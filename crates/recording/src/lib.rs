@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `frame` | the true state, at every decision | message |
 //! | `picture/<team>` | the picture of a team's minds | message |
-//! | `inputs` | before each frame, all inputs of the game since the last one: sufficient for a rerun | message |
+//! | `inputs` | before each frame, all inputs of the game since the previous frame: sufficient for a rerun | message |
 //! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: navigation, commands, every byte of the link | message |
 //! | `say/<team>`, `policy/<boat>` | messages of minds and policies | message |
 //! | `status/<boat>` | the state of gateways | JSON |
@@ -16,11 +16,11 @@
 //! | `input`, `event` | all other inputs of the gateway, and its events | JSON |
 //!
 //! All messages are CDR, as the profile `ros2` demands: either a Squall message, or a JSON object
-//! in a `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock,
-//! counted from the UTC at which the recording began; `publish_time` is the UTC at which the
-//! message was recorded. Both are in ns since 1970. `sequence` counts messages within a topic.
-//! Schemas are complete ROS 2 message definitions. Chunks are uncompressed and always written
-//! whole, so that a truncated file is valid up to its last chunk.
+//! in a `std_msgs/msg/String`. `log_time` is the UTC time when the recording began plus the time of
+//! the game or of the gateway's clock; `publish_time` is the UTC time when the message was
+//! recorded. Both are in ns since 1970. `sequence` counts messages within a topic. Schemas are
+//! complete ROS 2 message definitions. Chunks are uncompressed and always written whole, so that a
+//! truncated file is valid up to its last chunk.
 //!
 //! The first metadata is the header, with its own checksum: `squall` for a game (version, commit,
 //! game, pace, seed, scenario, waves), `gateway` for a gateway (version, commit, boat, plan). A

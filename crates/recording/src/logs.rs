@@ -154,12 +154,12 @@ impl Logs {
         sources.next().map(|(_, series)| series)
     }
 
-    /// The game as an MCAP file. Call [`Logs::sort`] first. If `is_known`, it is the game of this
-    /// scenario; otherwise the scenario's boats and field are replaced with the logged boats and a
+    /// The game as an MCAP file. Call [`Logs::sort`] first. If `is_known`, `game` is the scenario
+    /// of the logged game; otherwise its boats and field are replaced with the logged boats and a
     /// field around their tracks.
     ///
     /// # Errors
-    /// If the logs do not belong to one game, or a boat is not in it.
+    /// If the logs do not belong to one game, or a boat is not in the scenario.
     pub fn recording(&self, game: Scenario, is_known: bool) -> Result<Vec<u8>, String> {
         let boats = self.boats();
         let tracks = || {
@@ -185,7 +185,7 @@ impl Logs {
         let stop_s = when(0.0).filter(|end| *end > start_s);
         let length_s = stop_s.unwrap_or(last_s) - start_s;
         if !(0.0..LENGTH_MAX_S).contains(&length_s) {
-            return Err("they span more than a day: are they all from one game?".to_owned());
+            return Err("the logs span more than a day: are they all from one game?".to_owned());
         }
         if !is_known {
             scenario.rules.time_limit = SimTime::from_s(length_s);
@@ -392,7 +392,7 @@ impl Logs {
         Some(self.newest_at(whose, quantity, at_s)?.1)
     }
 
-    /// The same, with its time.
+    /// Like [`Logs::newest`], with the time of the value.
     pub fn newest_at(&self, whose: &str, quantity: Quantity, at_s: f64) -> Option<(f64, f64)> {
         newest(self.series(whose, quantity)?, at_s)
     }

@@ -63,7 +63,7 @@ impl NewFile {
     /// Creates a file with this name in a folder; adds a number if the name is taken.
     ///
     /// # Errors
-    /// As [`NewFile::create`].
+    /// As for [`NewFile::create`].
     pub fn create_numbered(folder: &Path, stem: &str) -> Result<NewFile, RecordError> {
         // Creating the file reserves its name. If the name were only checked, another program could
         // create it in the meantime.
@@ -81,7 +81,7 @@ impl NewFile {
     /// The file for a child process: an empty one lent by its parent, or else a new one.
     ///
     /// # Errors
-    /// [`RecordError`] if it cannot be opened or created, or already contains something.
+    /// [`RecordError`] if it cannot be opened or created, or is not empty.
     pub fn of_child(path: &Path) -> Result<NewFile, RecordError> {
         let file = match OpenOptions::new().write(true).open(path) {
             Err(e) if e.kind() == ErrorKind::NotFound => return NewFile::create(path),

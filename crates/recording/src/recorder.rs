@@ -12,7 +12,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Period of flushes to the system. Each flush closes a chunk, whose index entry (about 500 bytes)
-/// stays in memory until the file ends. With four flushes per second, that was 5 MB an hour.
+/// stays in memory until the file ends. With four flushes per second, that was several megabytes an
+/// hour.
 const FLUSH: Duration = Duration::from_secs(1);
 /// Time for which entries accumulate: waking the thread for each one would cost the game more than
 /// the writing itself.
@@ -85,9 +86,9 @@ impl Recorder {
         let theirs = Arc::clone(&shared);
         let size_of = path.clone();
         let thread = std::thread::Builder::new().name("recorder".to_owned());
-        // The recorder runs in the sim's process. The sim would have to wait for an observer on the
-        // network, or the observer would miss messages. The game passes copies;
-        // `benches/recording.rs` measures the cost.
+        // The recorder runs in the sim's process, not as an observer on the network: the sim would
+        // have to wait for an observer, or the observer would miss messages. The game passes
+        // copies; `benches/recording.rs` measures the cost.
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
         Ok(Recorder {
             path,
@@ -143,7 +144,7 @@ impl Recorder {
         if thread.join().is_err() {
             self.shared
                 .failed
-                .get_or_init(|| "its thread panicked".to_owned());
+                .get_or_init(|| "the recorder's thread panicked".to_owned());
         }
     }
 }

@@ -354,7 +354,7 @@ fn other_files_are_refused_with_the_reason() {
         .and_then(|writer| writer.end(ending().facts()));
     let message = reason(other.expect("a file").get_ref());
     assert!(
-        message.contains("recorded by Squall 0.0.1; this is"),
+        message.contains("recorded by Squall 0.0.1; this program is"),
         "{message}"
     );
     let missing = Recording::open(Path::new("/nowhere/at.mcap"))

@@ -9,7 +9,7 @@ pub struct Conditions {
     pub delay: Duration,
     /// Maximum extra delay. Messages over one link stay in order.
     pub jitter: Duration,
-    /// Fraction of published messages that a congested link drops.
+    /// Fraction of published messages that a link drops, as if congested.
     pub loss: f64,
     /// Fraction of published messages that arrive corrupted, from 0 to 1, and the kind of
     /// corruption.
@@ -18,7 +18,7 @@ pub struct Conditions {
     pub lease: Duration,
     /// Maximum wait of a leaf without a link between two attempts to connect.
     pub retry: Duration,
-    /// Maximum number of messages queued on a cut link; further ones are dropped.
+    /// Maximum number of published messages queued on a cut link; further ones are dropped.
     pub queue: usize,
     /// Maximum pause before some published messages, as if the node or another process were busy
     /// computing.

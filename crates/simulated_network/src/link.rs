@@ -8,7 +8,7 @@ use crate::state::{SessionState, State};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The maximum time until packets queued behind a cut are retransmitted.
+/// The maximum time from the end of a cut until the packets queued during it are retransmitted.
 const SENT_AGAIN: Duration = Duration::from_millis(200);
 /// The shortest time between two attempts to connect.
 const RETRY_LEAST: Duration = Duration::from_millis(100);
@@ -174,7 +174,7 @@ impl State {
             .collect()
     }
 
-    /// From now on, the ends of this node's links may receive nothing: starts their leases.
+    /// Starts the leases of this node's links, whose ends may receive nothing from now on.
     pub(crate) fn begin_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
             for at_hub in [false, true] {

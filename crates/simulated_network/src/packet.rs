@@ -80,7 +80,7 @@ pub(crate) struct Link {
     pub(crate) known: BTreeMap<u64, (Kind, String)>,
     pub(crate) down: Direction,
     pub(crate) up: Direction,
-    /// The time since which its ends have received nothing: the leaf, then the hub.
+    /// Since when each end has received nothing: the leaf, then the hub.
     pub(crate) silent_since_ns: [Option<u64>; 2],
 }
 

@@ -127,7 +127,7 @@ impl World {
         self.start + Duration::from_nanos(self.now_ns.load(Ordering::Relaxed))
     }
 
-    /// Reads or changes the state, then makes the calls that follow.
+    /// Reads or changes the state, then makes the calls that this causes.
     pub(crate) fn visit<R>(&self, visit: impl FnOnce(&mut State) -> R) -> R {
         let mut state = self.state.lock();
         let result = visit(&mut state);

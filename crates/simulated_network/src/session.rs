@@ -114,7 +114,8 @@ impl SimulatedSession {
         })
     }
 
-    /// Adds a declaration that lasts as long as the session. Returns its number.
+    /// Adds a declaration, which lasts until it is withdrawn or the session closes. Returns its
+    /// number.
     fn insert(&self, key: String, what: What) -> u64 {
         // A closed session refuses a declaration. It is dropped here, after the lock is released,
         // because dropping it may use the network.

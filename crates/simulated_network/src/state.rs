@@ -199,7 +199,7 @@ impl State {
         sessions.into_iter().for_each(|session| self.close(session));
     }
 
-    /// Records the end of a thread; when its first thread ends, so does the node.
+    /// Records the end of a thread. A node ends with its main thread.
     pub(crate) fn thread_ended(&mut self, thread: usize, node: usize, panic: Option<String>) {
         self.threads[thread].status = Status::Done;
         if let Some(panic) = panic {

@@ -143,7 +143,8 @@ impl Contest {
         &self.scenario
     }
 
-    /// The game of `scenario` with this seed. An E-stop or halt of this game stays in force.
+    /// A new game of `scenario` with this seed. An E-stop or halt of the current game stays in
+    /// force.
     ///
     /// # Errors
     /// As for [`Contest::new`].
@@ -159,7 +160,7 @@ impl Contest {
         &self.world
     }
 
-    /// The open decision.
+    /// The number of the open decision.
     pub fn decision(&self) -> u64 {
         self.state.decision
     }
@@ -300,9 +301,9 @@ impl Contest {
         }
     }
 
-    /// Updates a real boat's navigation from a fix at `fix_at`. The fix may be at most one decision
-    /// ahead, since reports arrive while a decision is open. A report that is not `valid` changes
-    /// no position.
+    /// Updates a real boat's navigation from a fix at `fix_at`. Reports arrive while a decision is
+    /// open, so the fix may be up to one decision ahead; a later time is reduced to that. A report
+    /// that is not `valid` changes no position.
     ///
     /// # Errors
     /// [`BadReport`] for implausible numbers and simulated boats; nothing changes then.

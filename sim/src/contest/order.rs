@@ -18,8 +18,8 @@ const STATION_RADIUS_M: f64 = 2.0;
 const STATION_RETURN_PER_S: f64 = 0.5;
 
 impl Contest {
-    /// Sends an order to a vehicle. It is in force from its arrival until the next order arrives or
-    /// it expires. A real boat receives it over a real link instead of the simulated one.
+    /// Sends an order to a vehicle. The order is in force from its arrival until it expires or the
+    /// next order arrives. A real boat receives it over a real link instead of the simulated one.
     /// `given_at` is the time of the picture that the order answers; a future time counts as the
     /// present.
     ///
@@ -47,7 +47,7 @@ impl Contest {
         if self.is_cut_off(vehicle) {
             return checked.map(drop);
         }
-        // With a radio, the age of an order counts from sending, not from arrival.
+        // Even if a radio delays the order, its age counts from the picture, not from arrival.
         let in_force = &mut self.state.orders[i];
         in_force.given_at = given_at;
         match &mut self.radio {
@@ -77,10 +77,10 @@ impl Contest {
     }
 
     /// A vehicle's effective command: its order in force, as modified by rules and operators. A
-    /// boat driven home gets a course home at the speed allowed by the rules; a speed limit also
-    /// scales thrust. A real boat holds while its position or its agent is lost, after its order
-    /// has expired, and after the end of the game: it must be supervised, whatever the rules
-    /// require.
+    /// boat driven home gets a course home at the speed allowed by the rules; a speed limit of the
+    /// rules also scales ordered thrust. A real boat holds while its position or its agent is lost,
+    /// after its order has expired, and after the end of the game: it must be supervised, whatever
+    /// the rules require.
     pub fn effective_command(&self, vehicle: VehicleId) -> Order {
         let i = vehicle.index();
         if self.is_stopped(i) {

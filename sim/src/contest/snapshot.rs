@@ -23,14 +23,16 @@ type Parts = (
     Option<SightingState>,
 );
 
-/// Why bytes are not a snapshot of this contest.
+/// A reason why a snapshot cannot be restored.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum RestoreError {
     /// Not a snapshot, or one with a different layout.
     #[error("not a snapshot made by this version of Squall")]
     NotASnapshot,
     /// A snapshot of a different scenario or seed.
-    #[error("a snapshot of another scenario or seed, or of other versions of its files")]
+    #[error(
+        "the snapshot is of a different scenario or seed, or the scenario's files have changed since"
+    )]
     OtherScenario,
     /// A truncated or modified snapshot.
     #[error("the snapshot is damaged")]
@@ -107,7 +109,7 @@ impl Contest {
     /// A contest in the same state that continues in a different sea.
     ///
     /// # Errors
-    /// [`NoStart`] if the seed's values do not suit this sea.
+    /// [`NoStart`] if the values drawn for the seed are inconsistent with this sea.
     pub fn in_sea(&self, sea: &Sea) -> Result<Contest, NoStart> {
         self.continued(|scenario| scenario.sea = sea.clone())
     }
@@ -127,8 +129,9 @@ impl Contest {
     }
 
     /// A 128-bit hash of world, standing and all events. In games with radio links, limits on
-    /// sharing or command watchdogs, it also covers orders in force, messages in transit and
-    /// contacts; with real boats, their fixes.
+    /// sharing or command watchdogs, it also covers the orders in force, the messages in transit,
+    /// and what teams know of their own boats and of contacts. In games with real boats, it also
+    /// covers their fixes.
     pub fn digest(&self) -> u128 {
         let ContestState {
             standing,

@@ -1,4 +1,4 @@
-//! The changing state of a contest, except its boats, and its invariants.
+//! The changing state of a contest, except its boats, and checks of its invariants.
 
 use super::Contest;
 use crate::external::Track;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// The state of a game: the referee's standing, orders to the boats, and knowledge on shore.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContestState {
-    /// The open decision.
+    /// The number of the open decision.
     pub(super) decision: u64,
     pub(super) standing: Standing,
     /// Orders in force, by vehicle index.
@@ -22,17 +22,18 @@ pub(super) struct ContestState {
     pub(super) stations: Vec<Option<Ned>>,
     /// Whether each vehicle's agent is lost.
     pub(super) agent_lost: Vec<bool>,
-    /// Whether an operator has set the E-stop or a halt.
+    /// Whether an operator has set the E-stop.
     pub(super) e_stopped: bool,
+    /// Whether an operator has ordered a halt.
     pub(super) halted: bool,
     /// Tracks of the real boats, by vehicle index.
     pub(super) tracks: Vec<Option<Track>>,
     /// Own boats as known on shore in the last pictures.
     pub(super) known: Vec<OwnBoat>,
     pub(super) events: Vec<Logged>,
-    /// Position in the events at the last pictures.
+    /// Position in the events when the pictures were last built.
     pub(super) pictured: EventCursor,
-    /// The decision of the last pictures.
+    /// The decision for which the pictures were last built.
     pub(super) pictured_for: Option<u64>,
     /// Pictures, by team index.
     pub(super) pictures: Vec<Picture>,
@@ -44,7 +45,7 @@ pub(super) struct OrderInForce {
     pub(super) order: Order,
     /// Time of arrival.
     pub(super) arrived_at: SimTime,
-    /// Time of the picture that the newest order answers, whether arrived or in transit.
+    /// Time of the picture that the newest order answers, even if that order is still in transit.
     pub(super) given_at: SimTime,
 }
 

@@ -37,8 +37,8 @@ pub fn accept(
     if own.iter().any(|vehicle| agents.has_taken(*vehicle, seq)) {
         return accepted;
     }
-    // In real time, an agent that is a tick late is still useful: its order counts until its time
-    // to live ends.
+    // In real time, an agent that is a decision late is still useful: its order counts until its
+    // time to live ends.
     if seq > tick || (seq < tick && pace == Pace::Lockstep) {
         refusals.count(Refusal::WrongTick);
         return accepted;

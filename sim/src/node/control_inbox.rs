@@ -155,8 +155,8 @@ mod tests {
             [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]
         );
         assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
-        // Alternating stops and queries do not fill the inbox either: the last stop stays the last
-        // one.
+        // Nor do alternating stops and queries fill the inbox: both stops are kept, and the last
+        // one remains last.
         for i in 0..1000 {
             send(
                 &inbox,

@@ -93,7 +93,8 @@ fn gather(
             sent = clock::now();
         }
     }
-    // Handle nodes that joined or left meanwhile, in case the game waits for no one.
+    // If all agents are lost, the loop has read nothing: handle nodes that joined or left
+    // meanwhile.
     server.listen(Duration::ZERO);
     Ok(())
 }

@@ -68,7 +68,7 @@ impl Membership {
             let theirs = &request.version;
             let ours = primitives::VERSION;
             return refused(format!(
-                "the {role} is Squall {theirs}; the sim is Squall {ours}: use the same version"
+                "the {role} runs Squall {theirs}, the sim Squall {ours}: use the same version"
             ));
         }
         // A node must join for at least one vehicle: lockstep would wait for a node without any.
@@ -125,7 +125,7 @@ impl Membership {
             (Role::Agent, _) => format!("the vehicles are: {}", names.join(", ")),
             (Role::Gateway, false) => format!("the external vehicles are: {}", names.join(", ")),
             (Role::Gateway, true) => {
-                "no vehicle is external: the game has none or is a rehearsal".to_owned()
+                "this game has no external vehicles or is a rehearsal".to_owned()
             }
         }
     }
@@ -191,20 +191,21 @@ impl Membership {
         }
     }
 
-    /// Removes a node. Returns its abandoned vehicles, to which it may return unless a different
-    /// node takes them.
+    /// Marks a node as absent. Returns its abandoned vehicles, to which it may return unless a
+    /// different node takes them.
     pub fn gone(&mut self, node: &str) -> Vec<VehicleId> {
         // The node is identified by the link that zenoh reports as lost, not by a liveliness token,
         // which anyone could present in another node's name.
         self.lose(|holder| holder.node == node)
     }
 
-    /// Drops all nodes that have not replied to `tick`. Returns their abandoned vehicles.
+    /// Marks all nodes that have not replied to `tick` as absent. Returns their abandoned vehicles.
     pub fn give_up(&mut self, tick: u64) -> Vec<VehicleId> {
         self.lose(|holder| holder.newest.is_none_or(|newest| newest < tick))
     }
 
-    /// Drops the node that holds this vehicle. Returns all its abandoned vehicles.
+    /// Marks the node that holds this vehicle as absent. Returns all vehicles that the node
+    /// abandoned.
     pub fn lose_holder_of(&mut self, vehicle: VehicleId) -> Vec<VehicleId> {
         let ticket = self.places[vehicle.index()]
             .present()

@@ -73,7 +73,7 @@ impl Sender {
             Sender::Joining => 64,
             Sender::Recorded(_) => 2048,
             Sender::Network => 1024,
-            // A single notification makes the sim read all of them.
+            // A single notification makes the sim read all inboxes.
             Sender::Inboxes => 1,
         }
     }
@@ -87,7 +87,7 @@ pub(super) struct MessageInbox {
     gate: Watched<Gate>,
 }
 
-/// In order of arrival.
+/// The waiting messages in order of arrival, and their number by sender.
 #[derive(Default)]
 struct Waiting {
     messages: VecDeque<(Sender, Incoming)>,
@@ -129,7 +129,7 @@ impl MessageInbox {
             }
             has_room
         });
-        // A notification without space is not lost, because one is already waiting.
+        // A notification that does not fit may be dropped, because one is already waiting.
         if !has_room && sender != Sender::Inboxes {
             self.refuse(Refusal::Flood);
         }

@@ -6,7 +6,7 @@ use messages::Control;
 pub(super) struct Pacing {
     /// Whether an operator has paused the game.
     pub(super) is_paused: bool,
-    /// Decisions still to play while paused.
+    /// Number of decisions still to be played while paused.
     steps: u32,
     /// Simulated seconds per second: a target in real time, a limit in lockstep. `None`: unlimited.
     pub(super) speed: Option<f64>,
@@ -37,7 +37,7 @@ impl Pacing {
         self.steps = self.steps.saturating_sub(1);
     }
 
-    /// Applies a command. Returns whether it is possible.
+    /// Applies a command if the game allows it. Returns whether it was applied.
     pub(super) fn change(&mut self, control: Control) -> bool {
         match control {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
@@ -45,7 +45,7 @@ impl Pacing {
             // Count the steps, because an operator may press the key faster than decisions are
             // played.
             Control::Step if self.is_paused => self.steps = self.steps.saturating_add(1),
-            // Real boats have only one speed.
+            // A game with real boats cannot change its speed.
             Control::Speed(Some(speed)) if Control::SPEEDS.contains(&speed) && !self.is_real => {
                 self.speed = Some(speed);
             }

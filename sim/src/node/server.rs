@@ -57,14 +57,14 @@ pub(super) struct GameServer<'w> {
     inbox: Arc<MessageInbox>,
     bus: Bus,
     pictures: Vec<Publisher>,
-    /// By team; only used in real time.
+    /// Limits on the pictures sent, by team; only used in real time.
     throttles: Vec<Throttle>,
     /// Subscriptions to the bytes of boats' links, while they are recorded or observed.
     link_reports: BTreeMap<VehicleId, Declaration>,
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
-    /// Position in the events at the last frame.
+    /// Position in the events when the last frame was built.
     shown: EventCursor,
     /// The last frame built.
     frame: Option<Arc<Frame>>,
@@ -204,7 +204,8 @@ impl<'w> GameServer<'w> {
         })
     }
 
-    /// If the game was reset, replaces it with the next one. Its agents have to join again.
+    /// If the game was reset, replaces it with the next one and returns true. All agents must then
+    /// join again.
     pub(super) fn restart(&mut self) -> bool {
         let Some(next) = self.next.take() else {
             return false;
@@ -219,7 +220,7 @@ impl<'w> GameServer<'w> {
     }
 
     /// Waits until every vehicle has an agent and every real boat has reported, up to the time
-    /// limit. Agents still missing are lost.
+    /// limit. Then marks the agents that are still missing as lost.
     pub(super) fn wait_for_everybody(
         &mut self,
         limit: Duration,
@@ -310,8 +311,8 @@ impl<'w> GameServer<'w> {
     /// Sends every team its picture of the open decision, and every real boat its order. Sending
     /// them twice is harmless.
     pub(super) fn send_pictures(&mut self) -> Result<(), NodeError> {
-        // Reports of real boats arrive while a decision is open; their age is measured back from
-        // this moment.
+        // Reports of real boats arrive while a decision is open. The times of their fixes are
+        // computed from this moment.
         self.opened = Some(clock::now());
         // Pictures are sent again until they are answered, but recorded once.
         let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
@@ -583,7 +584,7 @@ impl<'w> GameServer<'w> {
                 sent = clock::now();
             }
         }
-        // Meanwhile, agents had nothing to reply to.
+        // Agents had nothing to reply to meanwhile, so their silence does not count.
         self.heard.fill(self.time.worked);
         Ok(())
     }

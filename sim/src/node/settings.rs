@@ -39,7 +39,8 @@ pub struct Settings {
 /// A reason why a game could not be served.
 #[derive(Debug, Error)]
 pub enum NodeError {
-    /// The boats do not fit on the field, or the game has real boats but is in lockstep.
+    /// The game cannot start: for example, the boats do not fit on the field, or there are real
+    /// boats in a lockstep game.
     #[error(transparent)]
     NoStart(#[from] NoStart),
     /// The network failed.

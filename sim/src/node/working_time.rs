@@ -1,9 +1,9 @@
-//! The sim's working time, by which it measures its patience with other nodes. It excludes time
-//! that the sim lost because it was suspended or had no processor.
+//! The sim's working time, which limits how long it waits for other nodes. It excludes time in
+//! which the sim was suspended or had no processor.
 
 use std::time::{Duration, Instant};
 
-/// A cycle of the sim that takes longer counts as an interruption.
+/// Maximum duration of a cycle of the sim; a longer one counts as an interruption.
 const TURN_MAX: Duration = Duration::from_secs(1);
 /// Time after an interruption for lost links to return. It does not count against other nodes.
 /// zenoh waits at most four seconds between two attempts to connect.
@@ -27,8 +27,7 @@ impl WorkingTime {
         }
     }
 
-    /// Accounts for the time since the last call: the sim's own cycle, after a wait of up to
-    /// `waited`.
+    /// Accounts for the time since the last call: a wait of up to `waited`, and the sim's own work.
     pub(super) fn pass(&mut self, now: Instant, waited: Duration) {
         let passed = now.saturating_duration_since(self.looked);
         self.looked = now;

@@ -37,7 +37,7 @@ impl WaveField {
         };
         let mut bands: Vec<Band> = (0..count).map(empty).collect();
         for component in self.components() {
-            // A frequency below the range, or NaN, becomes 0.
+            // The conversion turns a negative number or NaN into 0.
             let place = ((component.omega_rad_s / TAU - range_hz.0) / width_hz) as usize;
             // The last band includes all components above the range.
             bands[place.min(count - 1)].variance_m2 +=

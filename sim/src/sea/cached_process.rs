@@ -20,7 +20,7 @@ pub(super) struct CachedProcess {
 }
 
 impl CachedProcess {
-    /// A process with a cache of at least `points`, up to a limit.
+    /// A process that caches at least `points` points, but at most [`HELD_MAX`].
     pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
         let correlation = GaussMarkov::neighbour_correlation();
         let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
@@ -73,7 +73,7 @@ impl CachedProcess {
         if self.held.0 <= index && index + 1 < self.held.1 {
             return (self.ring[self.slot(index)], self.ring[self.slot(index + 1)]);
         }
-        // Most of the path to the second point is the path to the first.
+        // The two points share most of their path.
         let mut trail = Trail::default();
         (
             self.process.at(index, &mut trail),

@@ -115,10 +115,10 @@ impl CurrentNow<'_> {
 
     /// The water's velocity (m/s) at the centre of a hull, and the rotation (rad/s clockwise)
     /// experienced by a hull on this heading: the rate at which the flow across the heading grows
-    /// along it.
+    /// along the hull.
     ///
-    /// The hull is assumed short compared with the curvature of the flow: for a hull of a tenth of
-    /// an eddy's core radius, the mean over its length differs by a thousandth.
+    /// The hull is assumed short compared with the curvature of the flow: for a hull a tenth as
+    /// long as an eddy's core radius, the mean over its length differs by a thousandth.
     #[inline]
     pub fn over_hull(&self, place: Ned, rotation: Rotation) -> (Ned, f64) {
         let ahead = rotation.ahead();

@@ -36,9 +36,9 @@ impl Vortex {
     /// The water's velocity, m/s, and the rate at which it turns a line along the unit vector
     /// `ahead`, rad/s clockwise.
     ///
-    /// With v = g(s) J d, d the vector from the centre, J a quarter turn, s = d² / a²: along a line
-    /// h the flow across it grows by g + 2 s g' (d·h)² / d², and s g' = c e^−s − g for a core
-    /// rotating at c.
+    /// Let v = g(s) J d, where d is the vector from the centre, J a quarter turn, and s = d² / a².
+    /// Along a unit vector h, the flow across it grows by g + 2 s g' (d·h)² / d² per metre. For a
+    /// core rotating at c, s g' = c e^−s − g.
     #[inline]
     pub(super) fn over(&self, place: Ned, ahead: Ned) -> (Ned, f64) {
         let from_centre = place - self.centre;

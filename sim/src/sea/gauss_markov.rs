@@ -3,8 +3,8 @@
 //! Also called the Ornstein-Uhlenbeck process: mean 0, variance 1, correlation e^(−lag). Its usual
 //! recursion needs the entire past; here a point is computed from the noise alone. Every 32
 //! correlation lengths there is an independent point (the neglected correlation is e^−32 = 1e−14).
-//! The intervals in between are halved repeatedly: midway between two known points δ away, the
-//! process has
+//! The intervals in between are halved repeatedly: midway between two known points, each δ away,
+//! the process has
 //!
 //! ```text
 //! mean (a + b) ρ / (1 + ρ²)        variance (1 − ρ²) / (1 + ρ²)        ρ = e^(−δ)
@@ -14,9 +14,9 @@
 //! reset to any tick therefore computes the same bits, whatever was read before.
 //!
 //! If another seed takes over after a point k, the process continues from there. With x from the
-//! previous seed and y from the new one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k.
-//! This has the law of the process given all values up to k: y's own value at k is subtracted, and
-//! the rest is independent of it.
+//! previous seed and y from the new one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k,
+//! where the lag is that from k to j. This has the law of the process given all values up to k: y's
+//! own value at k is subtracted, and the rest of y is independent of it.
 
 use primitives::SimTime;
 use primitives::reseed::Seeds;
@@ -83,8 +83,8 @@ impl Trail {
 }
 
 impl GaussMarkov {
-    /// The process `name` of this game. `place` is the farthest grid position read by a given time:
-    /// a seed replaced at that time still applies up to that position.
+    /// The process `name` of this game. `place` returns the farthest grid position read up to a
+    /// given time: a seed replaced at that time still applies up to that position.
     pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
@@ -150,8 +150,8 @@ impl GaussMarkov {
     fn of_noise(&self, noise: Noise, index: i64, trail: &mut Trail) -> Pair {
         let draw = |index: i64| noise.normal_pair((COUNT_OF_POINT_ZERO + index) as u64);
         let block = index.div_euclid(BLOCK);
-        // The ends of blocks alternate, so that the end of one block is still known as the start of
-        // the next.
+        // The slots for the ends of blocks alternate, so that the end of one block is still known
+        // as the start of the next.
         let end = |block: i64| LEVELS + (block & 1) as usize;
         // Neighbours share most of their path: a sequence of points costs about one draw each.
         let mut low = trail.known(end(block), block * BLOCK, || draw(block * BLOCK));
@@ -200,7 +200,8 @@ mod tests {
         const AFTER: i64 = 700;
         let first = GaussMarkov::new(&9.into(), "test", |now| now.as_s());
         let at = |process: &GaussMarkov, index| process.at(index, &mut Trail::default());
-        // Two points after the change and one a block later, given the point of the change.
+        // The process at these distances after the point of the change, given its value at that
+        // point.
         let lags = [1_i64, 40, 60];
         let known = at(&first, AFTER + 1).0;
         let mut sums = [[0.0; 3]; 3];

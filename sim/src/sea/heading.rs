@@ -1,11 +1,12 @@
-//! A table over heading, with entries every five degrees and linear interpolation.
+//! A table indexed by heading, with an entry every five degrees and linear interpolation.
 
 use crate::lanes::{FOLD, Lanes, ROW};
 use std::f64::consts::TAU;
 
 /// Number of headings in the table.
 // For the shipped boats, interpolation between 72 headings has an error of at most 0.4 % (root mean
-// square). For a hull three waves long it is up to 3 %, but such waves have little effect there.
+// square). For a hull three wavelengths long it is up to 3 %, but such waves have little effect on
+// such a hull.
 pub(super) const BINS: usize = 72;
 
 /// The heading of a bin, rad.

@@ -39,8 +39,8 @@ pub struct WaveSample {
 /// ```
 ///
 /// whose time average is exactly the mean drift force. In long-crested waves it is |sum a sqrt(T)
-/// e^(i theta)|²; in spread waves, the groups determine the magnitude and the mean over the
-/// directions determines the direction.
+/// e^(i theta)|², where a² T is a wave's mean drift force; in spread waves, the groups determine
+/// the magnitude and the mean over the directions determines the direction.
 #[derive(Clone, Debug)]
 pub struct HullWaves {
     instructions: Instructions,
@@ -53,7 +53,7 @@ pub struct HullWaves {
 }
 
 /// For four components: factors on the cosine and on the sine of the phase, for each of the four
-/// numbers of a line. Over time the phase decreases by ω: (cos)' = ω sin, (sin)' = −ω cos.
+/// numbers of a line. The phase decreases at the rate ω: (cos)' = ω sin, (sin)' = −ω cos.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     /// Surge, sway, decrease of the yaw rate, drift in phase.
@@ -236,8 +236,8 @@ struct Sums {
     of_sin: Lanes<f32>,
 }
 
-/// The part of [`HullWaves::at`] that computes the sums. Using the sums here would affect register
-/// allocation.
+/// The part of [`HullWaves::at`] that computes the sums. Building the sample here would affect
+/// register allocation.
 struct At<'a> {
     waves: &'a HullWaves,
     pose: Pose,

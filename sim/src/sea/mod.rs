@@ -47,7 +47,7 @@ use std::sync::Arc;
 /// Distance of the propellers astern of the midship point, as a fraction of the length.
 const PROPELLER_ASTERN: f64 = 0.4;
 
-/// Large tables shared by size of hull.
+/// Tables, one for each size of hull.
 type Made<const N: usize, T> = Vec<([f64; N], Arc<T>)>;
 
 /// The sea of a game, with tables for each kind of boat. Clones share the tables, which are large.
@@ -82,7 +82,7 @@ struct Kind {
     windage: Windage,
     /// The mean wind at the height of the boat's windage, m/s.
     wind_mean_m_s: f64,
-    /// Index into the submergences, if its propellers ventilate.
+    /// Index into the submergences, if the boat's propellers can ventilate.
     submergence: Option<usize>,
 }
 
@@ -99,7 +99,8 @@ pub struct SeaNow<'a> {
 /// The sea's effect on a boat over a tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeaForcing {
-    /// The water's velocity over the ground, without the orbital motion of waves, m/s.
+    /// The water's velocity over the ground, without the orbital motion of waves, m/s. Includes the
+    /// part of Stokes drift that does not follow from the forces.
     pub current_m_s: Ned,
     /// The waves' orbital velocity and the water's rotation, half-way through the tick, in body
     /// axes.
@@ -108,7 +109,7 @@ pub struct SeaForcing {
     pub water_rate: Planar,
     /// Wind, wave and drift forces in body axes.
     pub force: Planar,
-    /// Depth of the boat's propellers minus that in calm water, if they ventilate, m.
+    /// Depth of the boat's propellers minus that in calm water, m; zero if they cannot ventilate.
     pub submergence_change_m: [f64; 2],
 }
 
@@ -243,7 +244,7 @@ impl SeaModel {
 
 impl SeaNow<'_> {
     /// The sea's effect on a boat of this kind with this hull, in the tick that starts now. `nu` is
-    /// its velocity over the ground in body axes.
+    /// the boat's velocity over the ground in body axes.
     #[inline]
     pub fn forcing(
         &self,
@@ -334,7 +335,7 @@ impl SeaNow<'_> {
         self.current.at(at)
     }
 
-    /// Height of the water at a place above calm level, m.
+    /// Height of the water surface above calm level at a place, m.
     pub fn elevation_m(&self, at: Ned) -> f64 {
         self.model
             .waves

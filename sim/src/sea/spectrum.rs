@@ -13,8 +13,8 @@ use primitives::stream::Stream;
 use scenario::sea::{Spreading, Waves};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The frequency band used, in peak frequencies: 99.8 % of the variance and 96 % of its second
-/// moment at γ = 3.3.
+/// The frequency band used, in peak frequencies. At γ = 3.3 it contains 99.8 % of the variance and
+/// 96 % of the second moment.
 pub const BAND: (f64, f64) = (0.5, 5.0);
 
 /// Number of pieces of the curves below.
@@ -67,13 +67,13 @@ pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
 
 /// The components that represent this sea, by ascending frequency.
 ///
-/// The band is divided into one stratum per component, with equal fractions of the variance and its
-/// second moment (that of the velocities) combined. A component carries the variance of its
-/// stratum. Its frequency is drawn from the spectrum within the stratum: every moment is right on
-/// average, and the frequencies have no common multiple after which the sea would repeat itself.
-/// Each has one direction, so that the sea is the same process everywhere (Jefferys 1987).
-/// Directions are quantiles of the spreading at multiples of the golden ratio: a few neighbouring
-/// frequencies cover all directions, and neither side is favoured.
+/// The band is divided into one stratum per component. All strata have equal fractions of the mean
+/// of the normalised variance and the normalised second moment (that of the velocities). A
+/// component carries the variance of its stratum. Its frequency is drawn from the spectrum within
+/// the stratum: every moment is right on average, and the frequencies have no common multiple after
+/// which the sea would repeat itself. Each has one direction, so that the sea is the same process
+/// everywhere (Jefferys 1987). Directions are quantiles of the spreading at multiples of the golden
+/// ratio: a few neighbouring frequencies cover all directions, and neither side is favoured.
 pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let mut stream = Stream::new(seed, "waves");
     let count = waves.components as usize;
@@ -150,7 +150,7 @@ fn spread(spreading: Spreading) -> Option<Curve> {
     Some(Curve::new(interval, points(interval).map(density)))
 }
 
-/// The ends of an interval and of its [`PIECES`].
+/// The ends of the [`PIECES`] equal pieces of an interval.
 fn points(x: (f64, f64)) -> impl Iterator<Item = f64> {
     let step = (x.1 - x.0) / PIECES as f64;
     (0..=PIECES).map(move |i| x.0 + step * i as f64)

@@ -68,7 +68,7 @@ impl Submergence {
     }
 }
 
-/// Adds the changes by a row's waves from its coefficients, sines and cosines: port, then
+/// Adds the changes caused by a row of waves, given its coefficients, sines and cosines: port, then
 /// starboard.
 #[inline(always)]
 pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, cos: Lanes<f32>) {
@@ -83,7 +83,7 @@ struct Wave {
     amplitude_m: f64,
     pressed_m: f64,
     wavenumber_rad_m: f64,
-    /// The heave transfer function, in phase and lagging.
+    /// The transfer functions of heave, roll and pitch: the parts in phase and lagging.
     heave: (f64, f64),
     roll: (f64, f64),
     pitch: (f64, f64),

@@ -50,7 +50,7 @@ pub struct WaveSummary {
 pub struct WindSummary {
     /// Mean speed 10 m above the water, and at the height of the boat's windage, m/s.
     pub mean_m_s: [f64; 2],
-    /// Standard deviation along the wind at the boat, m/s.
+    /// Standard deviation of the wind speed at the boat, along the mean wind, m/s.
     pub gust_m_s: f64,
     /// Force on the boat at rest, with the wind from ahead and from abeam, N.
     pub force_newton: [f64; 2],

@@ -1,7 +1,7 @@
 //! A wave field: a sum of plane waves with separate heights, frequencies and directions.
 //!
 //! Linear (Airy) theory: elevation a cos θ with θ = k·x − ω t + φ and ω² = g k tanh k h. A moving
-//! boat encounters it at the frequency ω − k·V, because the field is evaluated at the boat's
+//! boat encounters a wave at the frequency ω − k·V, because the field is evaluated at the boat's
 //! position. The effects on a hull are in [`HullWaves`](super::HullWaves).
 
 use super::sine::sin_cos_turns;
@@ -77,7 +77,7 @@ impl PlaneWave {
     /// shallow water.
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
-        // Beyond this the quotient is 0 to the last bit, and further on the hyperbolic sine
+        // Beyond this the quotient is less than 1e-15, and further on the hyperbolic sine
         // overflows.
         if twice > 40.0 {
             1.0
@@ -91,8 +91,8 @@ impl PlaneWave {
         let k = self.wavenumber_rad_m;
         let draught_m = draught_m.min(self.depth_m);
         let bottom = libm::exp(-2.0 * self.depth_rad());
-        // Numerator: sinh 2kh − sinh 2k(h − T). The code divides it and sinh² k h by e^(2kh) / 2
-        // each.
+        // Numerator: sinh 2kh − sinh 2k(h − T). The code divides both the numerator and sinh² k h
+        // by e^(2kh) / 2.
         let at_keel = libm::exp(-2.0 * k * draught_m);
         let layer = (1.0 - at_keel) * (1.0 + bottom * bottom / at_keel);
         let a = self.component.amplitude_m;
@@ -100,9 +100,9 @@ impl PlaneWave {
             / (draught_m * (1.0 - bottom) * (1.0 - bottom))
     }
 
-    /// The square root of the part of a hull's drift force that depends on neither its size nor the
-    /// wave's direction: a R, from 1/2 ρ g a² R², where a hull of draught T reflects the fraction R
-    /// = 1 − e^(−2kT) of the wave. Finite depth as in Longuet-Higgins (1977).
+    /// The square root of the part of a hull's drift force that depends on neither its length and
+    /// beam nor the wave's direction: a R, from 1/2 ρ g a² R², where a hull of draught T reflects
+    /// the fraction R = 1 − e^(−2kT) of the wave. Finite depth as in Longuet-Higgins (1977).
     pub(super) fn reflected_m(&self, draught_m: f64) -> f64 {
         let reflected = 1.0 - libm::exp(-2.0 * self.wavenumber_rad_m * draught_m);
         self.component.amplitude_m * reflected * self.group_factor().sqrt()
@@ -211,7 +211,8 @@ pub(super) fn blocks<R>(waves: &[PlaneWave], row: impl Fn(&[PlaneWave]) -> R) ->
     waves.chunks(LANES).map(block).collect()
 }
 
-/// Four components of the surface: elevation, slope to the north, slope to the east, and zero.
+/// The effect of four wave components on the surface: on its elevation, its slope to the north and
+/// its slope to the east; and zero.
 #[derive(Clone, Copy, Debug)]
 struct SurfaceRow {
     per_cos: Lanes<f32>,
@@ -290,8 +291,8 @@ impl WaveField {
         }
     }
 
-    /// The same field; it and everything built from it use these instructions. The choice affects
-    /// only how long the computation takes.
+    /// Makes this field, and everything built from it, use these instructions. The choice affects
+    /// only the speed.
     pub fn with_instructions(self, instructions: Instructions) -> WaveField {
         WaveField {
             instructions,
@@ -353,7 +354,7 @@ impl WaveField {
         .sqrt()
     }
 
-    /// Standard deviation of the steepest slope, as an angle, rad.
+    /// Root mean square of the gradient of the surface, as an angle, rad.
     pub fn slope_rms_rad(&self) -> f64 {
         libm::atan(
             self.mean(|w| w.wavenumber_rad_m * w.wavenumber_rad_m)
@@ -361,15 +362,15 @@ impl WaveField {
         )
     }
 
-    /// Stokes drift averaged over a hull's draught, m/s: for a wave at the depth z it is a² ω k
+    /// Stokes drift averaged over a hull's draught, m/s. At the depth z, a wave contributes a² ω k
     /// cosh 2k(z + h) / (2 sinh² k h).
     pub fn stokes_drift_m_s(&self, draught_m: f64) -> Ned {
         self.drift_m_s(|w| w.stokes_m_s(draught_m))
     }
 
-    /// The part of Stokes drift caused by faster water where it has risen: a² ω k sinh² k(z + h) /
-    /// (2 sinh² k h), in deep water half of the total. A body that moves with the oscillating water
-    /// experiences the other part anyway.
+    /// The part of Stokes drift that arises because water moves faster where it has risen: a² ω k
+    /// sinh² k(z + h) / (2 sinh² k h), in deep water half of the total. A body that moves with the
+    /// oscillating water experiences the other part anyway.
     pub fn rise_drift_m_s(&self, draught_m: f64) -> Ned {
         // cosh 2x = 2 sinh² x + 1.
         self.drift_m_s(|w| {

@@ -113,7 +113,7 @@ pub(super) fn transfer(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f
     let real = 1.0 - ratio * ratio;
     let imaginary = 2.0 * damping * ratio;
     let size = real * real + imaginary * imaginary;
-    // A damped spring driven by the surface. These seas peak at or below half of its natural
+    // A damped spring driven by the surface. Typical seas peak at or below half of its natural
     // frequency, so a hull mostly follows the surface.
     (real / size, imaginary / size)
 }
@@ -133,8 +133,8 @@ impl WaveResponse {
             .iter()
             .map(|wave| pressed_m(wave, boat))
             .collect();
-        // Tabulate by heading: averaging each wave over the hull is most of the work and changes
-        // little between ticks.
+        // Tabulate by heading: averaging each wave over the hull is most of the work, and the
+        // average changes little between ticks.
         let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
             let Some(patch) = patches.of_bin(bin).get(wave) else {
                 return [0.0; FOLD];
@@ -186,7 +186,7 @@ struct Sums {
     heave_acceleration: Lanes<f32>,
 }
 
-/// The part of [`WaveResponse::at`] that computes the sums. Using the sums here would affect
+/// The part of [`WaveResponse::at`] that computes the sums. Building the attitude here would affect
 /// register allocation.
 struct At<'a> {
     response: &'a WaveResponse,

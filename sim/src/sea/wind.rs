@@ -80,8 +80,8 @@ impl WindField {
             } => {
                 let steps_per_m = STEPS_PER_LENGTH / length_m;
                 let steps_per_s = steps_per_m * carry_m_s;
-                // At the time of a reseed, no redrawn gust has reached the field: they are all
-                // upwind of it.
+                // When a new seed takes over, all gusts drawn from it are still upwind of the
+                // field.
                 let process = GaussMarkov::new(seeds, "gust", |now| {
                     place((steps_per_s, steps_per_m), reach_m.0, now)
                 });
@@ -130,7 +130,7 @@ impl WindField {
 }
 
 impl Frozen {
-    /// The grid position of the process `downwind_m` from the datum.
+    /// The grid position of the process `downwind_m` metres downwind of the datum.
     #[inline]
     fn place(&self, downwind_m: f64, now: SimTime) -> f64 {
         place((self.steps_per_s, self.steps_per_m), downwind_m, now)

@@ -129,7 +129,7 @@ impl GpsModel {
     }
 
     /// The last fix delivered by `now`. The receiver was on before the game: the fix of time 0 is
-    /// available at once, and there are no faults initially.
+    /// available at once, and is neither lost nor frozen.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
         // Delivery frees space for the new fix.
         while let Some(fix) = state

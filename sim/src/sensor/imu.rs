@@ -95,7 +95,7 @@ impl From<ImuReading> for picture::Imu {
 }
 
 impl ImuModel {
-    /// Gyro and accelerometers of the boat named `vehicle`, read every tick.
+    /// Gyro and accelerometers of the boat named `vehicle`, read every `tick`.
     pub fn new(imu: &Imu, tick: SimTime, seeds: &Seeds, vehicle: &str) -> ImuModel {
         let noise = seeds.noise(&format!("imu/{vehicle}"));
         ImuModel {

@@ -3,7 +3,7 @@
 //! Start with [`SensorModel::read`]. A sensor that a boat's file omits is perfect: it reports the
 //! true values bit for bit. Sensors keep their memory in their state, which is plain numbers and
 //! part of the world's snapshot. Random values are looked up by the number of the fix or reading,
-//! under `gps/<vehicle>`, `compass/<vehicle>` and `imu/<vehicle>`.
+//! in the noises `gps/<vehicle>`, `compass/<vehicle>` and `imu/<vehicle>`.
 
 pub mod compass;
 pub mod gps;
@@ -52,14 +52,14 @@ pub struct SensorState {
 }
 
 impl SensorState {
-    /// The compass error at its last reading, by which the front seat steers off course, rad.
+    /// The compass error at its last reading, rad. The front seat steers off course by this angle.
     pub fn heading_error_rad(&self) -> f64 {
         self.compass.error_rad
     }
 }
 
 impl SensorModel {
-    /// The sensors of the boat named `vehicle`, read once per tick, with these faults.
+    /// The sensors of the boat named `vehicle`, read every `tick`, with these faults.
     pub fn new(
         sensors: &Sensors,
         tick: SimTime,
@@ -81,7 +81,8 @@ impl SensorModel {
         }
     }
 
-    /// The measurements at `now`. Must be called for every tick from 0, in order.
+    /// The measurements at `now`. Must be called at time 0 and then every `tick` of
+    /// [`SensorModel::new`], in order.
     pub fn read(&self, state: &mut SensorState, truth: &Truth, now: SimTime) -> Reading {
         let psi_rad = match &self.compass {
             None => truth.pose.psi_rad,

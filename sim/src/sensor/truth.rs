@@ -1,4 +1,4 @@
-//! The quantities that sensors measure, and the code that they share.
+//! The quantities that sensors measure, and code shared by the sensors.
 
 use crate::hull::Planar;
 use crate::sea::Attitude;
@@ -17,7 +17,8 @@ pub struct Truth {
     pub nu_dot: Planar,
     /// Attitude in the waves.
     pub attitude: Attitude,
-    /// The thrusters' current as a fraction of the current with both at full thrust.
+    /// The mean magnitude of the two thrusts as a fraction of full thrust ahead; stands for the
+    /// thrusters' current.
     pub thrust_share: f64,
 }
 

@@ -47,7 +47,7 @@ pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
     scenario
 }
 
-/// A match with seed 1, at its start.
+/// A contest with seed 1, before its first tick.
 pub(crate) fn started(scenario: &Scenario) -> Contest {
     Contest::new(scenario, 1).unwrap_or_else(|e| panic!("{e}"))
 }

@@ -203,8 +203,8 @@ fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
         (share / want - 1.0).abs() < 0.05,
         "share {share}, not {want}"
     );
-    // Sampled every 0.2 s, an exponential duration is geometric. The expected probability that a
-    // drop-out ends with the next fix is:
+    // Sampled every 0.2 s, an exponential duration is geometric. A drop-out ends with the next fix
+    // with the probability `want_end`.
     let ended = dropped
         .windows(2)
         .filter(|pair| pair[0] && !pair[1])

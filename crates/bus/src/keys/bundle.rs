@@ -119,14 +119,14 @@ fn certificates(file: &Path) -> Result<Vec<CertificateDer<'static>>, BundleError
     let found: Result<Vec<_>, _> = CertificateDer::pem_slice_iter(&text).collect();
     match found {
         Ok(found) if !found.is_empty() => Ok(found),
-        Ok(_) => Err(refused(file, "has no certificate in PEM")),
+        Ok(_) => Err(refused(file, "contains no PEM certificate")),
         Err(e) => Err(refused(file, format!("is damaged: {e}"))),
     }
 }
 
 fn private_key(file: &Path) -> Result<PrivateKeyDer<'static>, BundleError> {
     PrivateKeyDer::from_pem_slice(&read(file)?)
-        .map_err(|e| refused(file, format!("has no private key in PEM: {e}")))
+        .map_err(|e| refused(file, format!("contains no PEM private key: {e}")))
 }
 
 fn read(file: &Path) -> Result<Vec<u8>, BundleError> {

@@ -113,15 +113,15 @@ fn explained(error: &Error, host: &str, identity: &Identity) -> String {
             format!("the sim's certificate has expired: make new keys for all nodes with `squall keys new` ({error})")
         }
         Error::InvalidCertificate(CertificateError::UnknownIssuer | CertificateError::BadSignature) => {
-            "the sim's certificate is from a different authority: its keys and these come from different runs of `squall keys new`"
+            "the sim's certificate is from a different authority: its keys and this node's come from different runs of `squall keys new`"
                 .to_owned()
         }
-        Error::InvalidCertificate(_) => format!("the sim's certificate is refused: {error}"),
+        Error::InvalidCertificate(_) => format!("this node rejects the sim's certificate: {error}"),
         Error::AlertReceived(AlertDescription::CertificateExpired) => {
-            format!("the sim reports that the certificate of {identity} has expired: check both clocks")
+            format!("the sim reports that the certificate of {identity} has expired: check the clocks of both machines")
         }
         Error::AlertReceived(alert) => format!(
-            "the sim rejects the certificate of {identity} ({alert:?}): its keys and these come from different runs of \
+            "the sim rejects the certificate of {identity} ({alert:?}): its keys and this node's come from different runs of \
              `squall keys new`"
         ),
         other => other.to_string(),

@@ -25,7 +25,7 @@ const GAME_MAX: Duration = Duration::from_secs(3);
 /// Maximum number of control ports.
 const GATEWAYS_MAX: usize = 256;
 
-/// Stops boats. When dropped, it closes its own paths.
+/// Stops boats. Closes its paths when dropped.
 pub struct StopClient(Arc<Shared>);
 
 /// The state shared by the client's threads.
@@ -78,8 +78,8 @@ impl StopClient {
     /// Adds a path: datagrams to a sim that listens at these endpoints.
     ///
     /// # Errors
-    /// If the system cannot provide a socket or thread. Endpoints of other kinds or with unknown
-    /// hosts are skipped.
+    /// If the system cannot provide a socket or thread. Endpoints that do not use TCP or whose host
+    /// is unknown are skipped.
     pub fn add_hub(
         &self,
         endpoints: &[String],
@@ -152,7 +152,7 @@ impl StopClient {
             .0
             .orders
             .visit(|orders| orders.ask(now, target.map(str::to_owned), command));
-        // The thread sends it: the caller may hold a lock, and sending takes time.
+        // The client's thread sends the stop: the caller may hold a lock, and sending takes time.
         if target.is_none() && command == StopCommand::EStop {
             self.0.ask_sim(number);
         }
@@ -169,7 +169,7 @@ impl StopClient {
     }
 
     /// Waits up to `limit` until every stop is done; returns the unfinished ones. Call it after the
-    /// last request. Without a game to name its boats, only the known ones count.
+    /// last request. Without a game that names its boats, only the known boats count.
     pub fn finish(&self, limit: Duration) -> Vec<String> {
         let start = clock::now();
         // The sim's answer proves nothing: the sim may be suspended while all boats have stopped,
@@ -379,7 +379,11 @@ impl Shared {
         });
         if let Err(e) = asked {
             self.orders.visit(|orders| {
-                orders.sim_answered(clock::now(), stop, Err(format!("cannot start thread: {e}")))
+                orders.sim_answered(
+                    clock::now(),
+                    stop,
+                    Err(format!("cannot start a thread: {e}")),
+                )
             });
         }
     }

@@ -1,7 +1,8 @@
 //! Stop datagrams: a request as at a control port, and its answer.
 //!
 //! A request is JSON, padded with spaces. Its answer repeats its session and number, which an
-//! outsider cannot guess. It is never longer than the request, so the port cannot amplify a flood.
+//! outsider cannot guess. The answer is never longer than the request, so the port cannot amplify a
+//! flood.
 
 use crate::token::{Proof, Token};
 use messages::external::GatewayCommand;
@@ -56,9 +57,9 @@ impl StopRequest {
     /// Never: every request can be encoded as JSON.
     pub fn encode(&self) -> Vec<u8> {
         let mut bytes = serde_json::to_vec(self).expect("a request is JSON");
-        // The answer may be no longer than the request, but must name all boats. With headers it
-        // stays below the 1280 bytes that every IPv6 link carries (RFC 8200); a fragmented datagram
-        // is lost if any fragment is lost.
+        // The answer may be no longer than the request, but must name all boats. With headers, a
+        // padded request stays below the 1280 bytes that every IPv6 link carries (RFC 8200); a
+        // fragmented datagram is lost if any fragment is lost.
         bytes.resize(bytes.len().max(FILLED), b' ');
         bytes
     }

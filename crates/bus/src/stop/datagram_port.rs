@@ -1,4 +1,4 @@
-//! A UDP socket, and a thread that reads it until it is dropped.
+//! A UDP socket, and a thread that reads it until the port is dropped.
 
 use super::DATAGRAM_MAX;
 use crate::clock;
@@ -22,7 +22,7 @@ impl DatagramPort {
     /// Calls `serve` with every datagram that is not too long, and sends the result back.
     ///
     /// # Errors
-    /// If the system cannot start a thread.
+    /// If the system cannot set the socket's time limit or start a thread.
     pub fn open(
         socket: UdpSocket,
         name: &str,

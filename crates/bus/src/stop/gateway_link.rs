@@ -250,7 +250,7 @@ impl Connection {
             let Some(asked) = awaited.filter(|_| line.ends_with(b"\n")) else {
                 return Ok(());
             };
-            // This connection proves nothing: requests that need the token use a separate
+            // This connection sends no proofs: requests that need the token use a separate
             // connection.
             match serde_json::from_slice(&line) {
                 Ok(Answer::Answer(OperatorReply {
@@ -262,7 +262,8 @@ impl Connection {
                         asked,
                     ));
                 }
-                // A different boat's gateway, or a gateway that is not running yet.
+                // A refusal, as from a different boat's gateway, or a challenge, which this
+                // connection does not answer.
                 Ok(_) => {}
                 Err(_) => return Ok(()),
             }

@@ -42,7 +42,6 @@ impl HubStopPort {
         game: &GameName,
         boats: &[String],
     ) -> Result<HubStopPort, BusError> {
-        // A datagram carries no certificate, and a game with keys accepts nothing without one.
         if !runtime().has_sockets() || net.keys.is_some() {
             return Ok(HubStopPort(vec![]));
         }
@@ -74,9 +73,9 @@ impl HubStopPort {
                 found.map(UdpSocket::bind).partition(Result::is_ok);
             if bound.is_empty() {
                 let missed = missed.into_iter().find_map(Result::err);
-                return Err(failed(
-                    missed.unwrap_or_else(|| std::io::Error::other("host has no address")),
-                ));
+                return Err(failed(missed.unwrap_or_else(|| {
+                    std::io::Error::other("the host has no address")
+                })));
             }
             for socket in bound.into_iter().flatten() {
                 let server = Arc::clone(&server);

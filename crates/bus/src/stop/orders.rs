@@ -8,8 +8,8 @@ use super::StopCommand;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
-/// When a stop is repeated, ms after the request: the loss of one then costs little, and repeats
-/// let TCP detect it immediately.
+/// When a stop is sent, ms after the request. At such short intervals, a lost message costs little
+/// time, and the repeats let TCP detect the loss immediately.
 const SOON_MS: [u64; 6] = [0, 10, 20, 40, 80, 160];
 /// The interval of later repeats.
 const AGAIN: Duration = Duration::from_millis(200);
@@ -36,9 +36,9 @@ const NEWS_MAX: usize = 1024;
 /// The known facts about a boat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownBoat {
-    /// The boat's state as a string, if it was heard.
+    /// The boat's last reported state as a string, if any.
     pub state: Option<String>,
-    /// When it was heard last.
+    /// When the boat was last heard, directly or through the sim.
     pub heard: Option<Instant>,
     /// When the boat was last heard directly, not through a copy from the sim.
     heard_itself: Option<Instant>,
@@ -69,8 +69,8 @@ pub enum StopNews {
         /// The kind of stop.
         command: StopCommand,
     },
-    /// The sim has answered a stop of all boats after the given time, or has failed to, for the
-    /// given reason.
+    /// The sim's answer to a stop of all boats: after how long it came, or why the sim refused or
+    /// did not answer.
     Sim(Result<Duration, String>),
     /// The state of a boat has changed.
     State {
@@ -106,11 +106,11 @@ struct Stop {
     target: Option<String>,
     command: StopCommand,
     asked: Instant,
-    /// How often the stop was sent.
+    /// The number of times that the stop was sent.
     said: usize,
-    /// Boats that show the stop, and whether in an answer to it.
+    /// Boats that show the stop, and whether the report is certainly newer than the stop.
     shown: BTreeMap<String, bool>,
-    /// Boats that were in a different state when it was requested, or have been since.
+    /// Boats that were in a different state when the stop was requested, or have been since.
     others: BTreeSet<String>,
     /// The sim's answer to a stop of all boats.
     sim: Option<Result<(), String>>,
@@ -126,8 +126,9 @@ struct Stop {
 pub(super) struct Saying {
     pub(super) number: u64,
     pub(super) command: StopCommand,
-    /// Whether the stop is for all boats and still sent to all.
+    /// Whether the stop is for all boats.
     pub(super) is_of_fleet: bool,
+    /// Whether the stop is still sent to all boats, even to those that already show it.
     pub(super) to_everybody: bool,
     /// The boats that do not certainly show the stop yet.
     pub(super) boats: Vec<String>,

@@ -1,4 +1,4 @@
-//! Logs of other programs: each is read or rejected, whichever format it is taken for.
+//! Logs from other programs: each is read or rejected, whichever format it is taken for.
 
 use super::{Target, check_shown, mutations};
 use ::import::{Input, read, table};

@@ -1,4 +1,4 @@
-//! Per-tick messages (CDR): their decoding, and their effect on sim, minds and observers.
+//! High-rate messages (CDR): their decoding, and their effect on sim, minds and observers.
 
 use super::{Target, check_shown, mutations};
 use crate::played::{self, Played, mixed, played};

@@ -109,8 +109,8 @@ pub(super) fn look_around(recording: Recording) {
     );
 }
 
-/// Sends lines to a session. Every reply has a kind, the replies come to an end, and at most two
-/// frames are in flight.
+/// Sends lines to a session. Every reply has a kind, the number of replies is limited, and at most
+/// two frames are in flight.
 fn talk(mut session: PageSession, lines: &str, answered: impl Fn(&str, &[String])) {
     let mut now = clock::now();
     let mut under_way = 0_usize;

@@ -305,7 +305,7 @@ fn prefix(bytes: &[u8]) -> Option<(u8, usize, &[u8])> {
     ))
 }
 
-/// A file of these records. Only the header's checksum is valid.
+/// A file of these records, without chunks, and without checksums other than the header's.
 fn written(records: &[Record]) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     let end = (DATA_END, vec![0; 4]);

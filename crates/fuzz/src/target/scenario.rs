@@ -36,7 +36,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<Sweep>(),
 ];
 
-/// Copies of the files in the tree, with room for one more.
+/// A copy of the files in the tree, to which each input is added.
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().expect("a folder");
     for (path, text) in files() {

@@ -462,7 +462,7 @@ fn arrangements_that_do_not_fit_are_refused() {
         ),
         (
             |g| with_integers(g, "Squeeze", &[&[-3]]),
-            "(Squeeze): found axis -3, expected an axis of 2 dimensions",
+            "(Squeeze): found axis -3, expected one of 2 axes",
         ),
         (
             |g| with_integers(g, "Unsqueeze", &[&[1, 1]]),
@@ -494,7 +494,7 @@ fn arrangements_that_do_not_fit_are_refused() {
         ),
         (
             |g| with_integers(g, "Gather", &[&[1]]),
-            "(Gather): found index 1, expected an index of 1 numbers",
+            "(Gather): found index 1, expected an index into 1 numbers",
         ),
         (
             |g| with_integers(g, "Expand", &[&[1, 2]]),
@@ -522,7 +522,7 @@ fn arrangements_that_do_not_fit_are_refused() {
         ),
         (
             |g| with_integers(g, "ReduceMean", &[&[2]]),
-            "(ReduceMean): found axis 2, expected an axis of 2 dimensions",
+            "(ReduceMean): found axis 2, expected one of 2 axes",
         ),
         (
             |g| with_integers(g, "Add", &[&[1, 2, 3]]),

@@ -127,8 +127,7 @@ fn a_network_says_what_it_takes_and_gives_and_what_its_file_says() {
     );
 }
 
-/// The bits of the policy's output for its first row, the same on every machine and with every
-/// compiler.
+/// The bits of each model's outputs are the same on every machine and with every compiler.
 #[test]
 fn a_network_gives_the_same_bits_everywhere() {
     let mut digests = vec![];

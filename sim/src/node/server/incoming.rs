@@ -307,7 +307,7 @@ impl GameServer<'_> {
             pacing if self.pacing.change(pacing) => {}
             _ => {
                 self.refusals.count(Refusal::OutOfPlace);
-                reply = Err("the game's pace or state does not allow this".to_owned());
+                reply = Err("the game's pace or state does not allow this command".to_owned());
             }
         }
         self.is_news = true;
