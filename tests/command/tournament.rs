@@ -172,8 +172,8 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
         (&play("4").0, &play("4").1, &play("4").2)
     );
 
-    let wanted = "challenger commit entries failures game games_left_out games_per_pairing \
-                  games_unplayed history matches matrix plan rate sea seed seeds_counted teams tournament version";
+    let wanted = "challenger commit cycles entries failures game games_left_out games_per_pairing \
+                  games_unplayed history matches matrix plan rate sea seas seed seeds_counted teams tournament version";
     assert_eq!(keys(&report).join(" "), wanted);
     assert_eq!(
         (&report["tournament"], &report["seed"]),
@@ -478,6 +478,37 @@ fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again(
         );
         assert!(why.contains(expected), "{why}");
     }
+}
+
+#[test]
+fn a_league_plays_its_file_and_the_given_strategies_in_every_sea_and_nothing_twice() {
+    let dir = tempfile::tempdir().unwrap();
+    let entries = [("pav01", "pav01"), ("idle", "idle")];
+    let file = tournament_of(&dir, "games = 2", &entries).replace("tournament.toml", "own.toml");
+    std::fs::rename(place(&dir, "tournament.toml"), &file).unwrap();
+    let folder = place(&dir, "league");
+    let play = |more: &[&str]| {
+        let how = [&["league", "--file", &file, "--folder", &folder], more].concat();
+        let output = output(&how);
+        assert!(output.status.success(), "{output:?}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        (String::from_utf8(output.stderr).unwrap(), text)
+    };
+    let (said, _) = play(&[]);
+    assert!(said.contains("0 of 2 games already played"), "{said}");
+    let seas = ["--sea", "moderate_breeze", "--sea", "calm"];
+    let (said, text) = play(&[&["scenarios/policies/options.onnx"][..], &seas].concat());
+    assert!(said.contains("2 of 12 games already played"), "{said}");
+    assert!(said.contains("squall view "), "{said}");
+    for words in ["learned", "rule_based", "moderate_breeze", "--sea SEA"] {
+        assert!(text.contains(words), "{text}");
+    }
+    let report = json(&format!("{folder}/report.json"));
+    assert_eq!(report["seas"].as_array().unwrap().len(), 2);
+    assert_eq!(report["games_per_pairing"], 4);
+    let twice = output(&["league", "--sea", "calm", "--sea", "calm"]);
+    let why = String::from_utf8(twice.stderr).unwrap();
+    assert!(why.contains("a sea is given twice"), "{why}");
 }
 
 #[test]
