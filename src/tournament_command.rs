@@ -1,7 +1,7 @@
 //! `squall tournament`: plays every strategy against every other, in this process.
 
 use crate::jobs_args::JobsArgs;
-use crate::league_file::LeagueFile;
+use crate::league_file::{self, LeagueFile};
 use crate::progress::{Progress, tell_rounded};
 use crate::{output_file, recording_file, scenario_files, screen, stop};
 use agent::MindRunner;
@@ -93,7 +93,7 @@ pub(crate) fn run_file(file: Tournament, args: &Args) -> Result<ExitCode> {
         records,
         quality,
         rate,
-    } = play_all(args, &plan, &stop, league.as_mut());
+    } = play_all(args, &plan, &stop, league.as_mut())?;
 
     let mut report = Report::new(&plan, &records);
     report.commit = env!("SQUALL_COMMIT").to_owned();
@@ -142,9 +142,10 @@ fn play_all(
     plan: &Plan,
     stop: &AtomicBool,
     mut league: Option<&mut LeagueFile>,
-) -> Played {
+) -> Result<Played> {
     let all = || (0..plan.games()).collect::<Vec<usize>>();
-    let pairings = plan.pairings();
+    let pairings = league.as_ref().map(|_| league_file::pairings(plan));
+    let pairings = pairings.transpose()?.unwrap_or_default();
     let (mut records, games) = league.as_ref().map_or_else(
         || (vec![], all()),
         |file| file.league.split(plan, &pairings),
@@ -171,11 +172,11 @@ fn play_all(
         play(plan, &games, jobs, stop, take);
         None
     };
-    Played {
+    Ok(Played {
         records,
         quality,
         rate: progress.end_of_games(jobs.get()),
-    }
+    })
 }
 
 /// Plays games of a plan, and judges how sensibly the boats behave.
