@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 /// The subcommands by purpose, in help order. Some builds lack the commands that need a network.
 const GROUPS: [(&str, &[&str]); 6] = [
-    ("Play", &["demo", "run", "tournament", "sweep"]),
+    ("Play", &["demo", "run", "tournament", "league", "sweep"]),
     ("Learn", &["train", "policy"]),
     (
         "Watch",

@@ -4,9 +4,13 @@ use crate::output_file;
 use anyhow::{Context, Result, bail};
 use experiment::tournament::{League, Plan, Record};
 use primitives::input_file::{self, TABLE_BYTES_MAX};
+use scenario::strategy::{Behaviour, Task};
+use scenario::{Scenario, digest_of};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The results, one line per game.
 const RESULTS: &str = "results.jsonl";
@@ -76,4 +80,65 @@ impl LeagueFile {
             None => Ok(()),
         }
     }
+}
+
+/// Identifies the games of each seed, as [`Plan::pairings`], and by the files of the competition
+/// entries that play, which are not part of a scenario.
+pub(crate) fn pairings(plan: &Plan) -> Result<Vec<String>> {
+    let mut known = BTreeMap::new();
+    let mut pairings = plan.pairings();
+    for (place, pairing) in pairings.iter_mut().enumerate() {
+        for host in hosts(plan.match_at(place).1) {
+            if !known.contains_key(host) {
+                known.insert(host.to_owned(), digest_of_entry(Path::new(host))?);
+            }
+            *pairing += &format!(" {}", known[host]);
+        }
+    }
+    Ok(pairings)
+}
+
+/// The competition entries of a scenario: their folders or files.
+fn hosts(scenario: &Scenario) -> BTreeSet<&str> {
+    let roles = scenario.strategies.iter().flat_map(|one| &one.roles);
+    let host = |behaviour| match behaviour {
+        &Behaviour {
+            task: Task::Policy(ref policy),
+            ..
+        } => policy.host.as_ref().map(|host| host.path.as_str()),
+        _ => None,
+    };
+    roles
+        .flat_map(|role| &role.behaviours)
+        .filter_map(host)
+        .collect()
+}
+
+/// The digest of all files of an entry, without Python's compiled ones.
+fn digest_of_entry(entry: &Path) -> Result<String> {
+    /// Maximum number of files.
+    const FILES_MAX: usize = 10_000;
+    let what = || format!("cannot read the entry {}", entry.display());
+    let folder = if entry.is_file() {
+        entry.parent().unwrap_or(entry)
+    } else {
+        entry
+    };
+    let mut folders = vec![folder.to_owned()];
+    let mut files = BTreeMap::new();
+    while let Some(folder) = folders.pop() {
+        for found in std::fs::read_dir(&folder).with_context(what)? {
+            let path = found.with_context(what)?.path();
+            if path.is_file() {
+                let bytes = input_file::read(&path, TABLE_BYTES_MAX).with_context(what)?;
+                files.insert(path, Arc::from(bytes));
+            } else if path.is_dir() && !path.is_symlink() && !path.ends_with("__pycache__") {
+                folders.push(path);
+            }
+            if files.len() > FILES_MAX {
+                bail!("{} has more than {FILES_MAX} files", entry.display());
+            }
+        }
+    }
+    Ok(digest_of("", &Vec::from_iter(files)))
 }

@@ -11,6 +11,7 @@ mod import_command;
 mod in_process;
 mod jobs_args;
 mod kinds;
+mod league_command;
 mod league_file;
 mod log_command;
 mod minds;
@@ -79,6 +80,11 @@ enum Command {
         after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament strategy_4 strategy_3 --games 40\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
     )]
     Tournament(tournament_command::Args),
+    /// Plays the missing games of a league of all built-in strategies and your own.
+    #[command(
+        after_help = "Examples:\n  squall league --games 10\n  squall league mine.onnx host:entry\n  squall view runs/league"
+    )]
+    League(league_command::Args),
     /// Measures how much disturbance strategies tolerate: wind, noise and failures.
     #[command(after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --resume")]
     Sweep(sweep_command::Args),
@@ -180,6 +186,7 @@ fn run(command: Command) -> Result<ExitCode> {
             cli::not_built("the page that shows recordings")
         )),
         Command::Tournament(args) => tournament_command::run(&args),
+        Command::League(args) => league_command::run(args),
         Command::Whatif(args) => whatif_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),

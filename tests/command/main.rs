@@ -3,6 +3,7 @@
 
 mod full_disk;
 mod import;
+mod league;
 mod log;
 mod memory;
 mod names;

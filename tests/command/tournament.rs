@@ -11,16 +11,16 @@ const SEA: &str = "scenarios/seas/moderate_breeze.toml";
 const TOURNAMENT: &str = "scenarios/tournaments/simple.toml";
 
 /// Runs the program in the project folder to its end.
-fn output(args: &[&str]) -> Output {
+pub(crate) fn output(args: &[&str]) -> Output {
     squall(project(), args)
 }
 
 /// A path in a temporary folder, as an argument.
-fn place(dir: &TempDir, name: &str) -> String {
+pub(crate) fn place(dir: &TempDir, name: &str) -> String {
     dir.path().join(name).display().to_string()
 }
 
-fn json(path: &str) -> Value {
+pub(crate) fn json(path: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -43,7 +43,7 @@ fn short_tournament(dir: &TempDir, more: &str) -> String {
 }
 
 /// Like [`short_tournament`], with these settings and with entries by name and strategy.
-fn tournament_of(dir: &TempDir, settings: &str, entries: &[(&str, &str)]) -> String {
+pub(crate) fn tournament_of(dir: &TempDir, settings: &str, entries: &[(&str, &str)]) -> String {
     let path = short_tournament(dir, "");
     let entry = |(name, file): &(&str, &str)| {
         let strategy = scenario(&format!("strategies/{file}.toml"));
@@ -172,8 +172,8 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
         (&play("4").0, &play("4").1, &play("4").2)
     );
 
-    let wanted = "challenger commit entries failures game games_left_out games_per_pairing \
-                  games_unplayed history matches matrix plan rate sea seed seeds_counted teams tournament version";
+    let wanted = "challenger commit cycles entries failures game games_left_out games_per_pairing \
+                  games_unplayed history matches matrix plan rate sea seas seed seeds_counted teams tournament version";
     assert_eq!(keys(&report).join(" "), wanted);
     assert_eq!(
         (&report["tournament"], &report["seed"]),
@@ -390,108 +390,6 @@ fn games_that_cannot_start_are_explained() {
             && text.contains("no free start position for red_1"),
         "{text}"
     );
-}
-
-#[test]
-fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again() {
-    let dir = tempfile::tempdir().unwrap();
-    let league = place(&dir, "league");
-    let whole = place(&dir, "whole.json");
-    let results = format!("{league}/results.jsonl");
-    let play = |entries: &[(&str, &str)], options: &[&str]| {
-        let tournament = tournament_of(&dir, "games = 4", entries);
-        let output = output(&[&["tournament", &tournament], options].concat());
-        assert!(output.status.success(), "{output:?}");
-        String::from_utf8(output.stderr).unwrap()
-    };
-    let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| (name, name));
-    let said = play(&[four, pav01], &["--league", &league]);
-    assert!(said.contains("0 of 4 games already played"), "{said}");
-    // The last line was truncated when the machine stopped. The resumed league writes the same
-    // bytes.
-    let text = std::fs::read_to_string(&results).unwrap();
-    let uninterrupted = std::fs::read(format!("{league}/report.json")).unwrap();
-    std::fs::write(&results, &text[..text.len() - 9]).unwrap();
-    let said = play(&[four, pav01], &["--league", &league]);
-    assert!(said.contains("3 of 4 games already played"), "{said}");
-    assert_eq!(std::fs::read_to_string(&results).unwrap(), text);
-    assert_eq!(
-        std::fs::read(format!("{league}/report.json")).unwrap(),
-        uninterrupted
-    );
-    std::fs::write(&results, &text[..text.len() - 9]).unwrap();
-    let said = play(&[four, pav01, idle], &["--league", &league]);
-    assert!(
-        said.contains("3 of 12 games already played") && said.contains("9 games in"),
-        "{said}"
-    );
-    // The result equals that of a tournament that plays all games.
-    play(&[four, pav01, idle], &["--json", &whole]);
-    let mut known = json(&format!("{league}/report.json"));
-    let mut anew = json(&whole);
-    anew["rate"] = Value::Null;
-    // Only the history shows that idle joined later: it is rated after its first game.
-    let joined = |report: &mut Value| {
-        let idle = report["entries"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .position(|row| row["name"] == "idle")
-            .unwrap();
-        let history = report["history"].take();
-        history
-            .as_array()
-            .unwrap()
-            .iter()
-            .find(|at| !at["elo"][idle].is_null())
-            .unwrap()["games"]
-            .clone()
-    };
-    assert_eq!(
-        (joined(&mut known), joined(&mut anew)),
-        (4.into(), 3.into())
-    );
-    assert_eq!(known, anew);
-    // A renamed file is the same player; a changed file is not.
-    let said = play(&[("renamed", "strategy_4"), pav01], &["--league", &league]);
-    assert!(said.contains("4 of 4 games already played"), "{said}");
-    let said = play(&[four, ("pav01", "easy_attackers")], &["--league", &league]);
-    assert!(said.contains("0 of 4 games already played"), "{said}");
-    // If a game file has changed on disk, its earlier results are unusable.
-    let changed = text.replacen("\"seed\":1", "\"seed\":7", 1);
-    assert_ne!(changed, text);
-    for (damaged, expected) in [
-        ("{}\n", "missing field"),
-        (changed.as_str(), "its checksum does not match"),
-    ] {
-        std::fs::write(&results, damaged).unwrap();
-        let refused = output(&[
-            "tournament",
-            &place(&dir, "tournament.toml"),
-            "--league",
-            &league,
-        ]);
-        let why = String::from_utf8(refused.stderr).unwrap();
-        assert!(
-            !refused.status.success() && why.contains("results.jsonl: line 1 is not a league game"),
-            "{why}"
-        );
-        assert!(why.contains(expected), "{why}");
-    }
-}
-
-#[test]
-fn an_endless_file_in_place_of_a_leagues_results_is_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    for endless in ["/proc/kmsg", "/dev/zero"] {
-        let results = place(&dir, "results.jsonl");
-        std::os::unix::fs::symlink(endless, &results).unwrap();
-        let refused = output(&["tournament", "simple", "--league", &place(&dir, "")]);
-        let why = String::from_utf8(refused.stderr).unwrap();
-        assert!(why.contains("cannot open the league"), "{endless}: {why}");
-        assert!(!refused.status.success());
-        std::fs::remove_file(&results).unwrap();
-    }
 }
 
 #[test]

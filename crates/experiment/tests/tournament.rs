@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue has failed")]
 
 use experiment::Game;
-use experiment::tournament::{Cell, Match, Plan, Record, Report, play};
-use experiment::tournament::{Entrant, Tournament};
+use experiment::tournament::{Cell, Match, Plan, Record, Report, Row, play};
+use experiment::tournament::{Entrant, EntryKind, Tournament};
 use rules::count::Counts;
 use scenario::{Overrides, load_file, load_with};
 use std::num::NonZeroUsize;
@@ -24,11 +24,13 @@ fn tournament(game: &str, games: u32, strategies: &[&str]) -> Tournament {
     let entrant = |(i, strategy): (usize, &&str)| Entrant {
         name: format!("{strategy}_{i}"),
         strategy: shipped(&format!("strategies/{strategy}.toml")),
+        kind: None,
     };
     Tournament {
         name: "small".to_owned(),
         game: shipped(&format!("games/{game}.toml")),
         sea: None,
+        seas: vec![],
         entries: strategies.iter().enumerate().map(entrant).collect(),
         games,
         seed: 7,
@@ -102,7 +104,14 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
         for sides in [[0, 1], [1, 0], [0, 2], [2, 0], [1, 2], [2, 1]] {
             let count = matches
                 .iter()
-                .filter(|game| **game == Match { seed, sides })
+                .filter(|game| {
+                    **game
+                        == Match {
+                            seed,
+                            sides,
+                            sea: 0,
+                        }
+                })
                 .count();
             assert_eq!(count, 1, "seed {seed}, {sides:?}");
         }
@@ -180,7 +189,11 @@ fn record(seed: u64, sides: [usize; 2], score: [u32; 2]) -> Record {
         Counts::default(),
     ];
     Record {
-        of: Match { seed, sides },
+        of: Match {
+            seed,
+            sides,
+            sea: 0,
+        },
         result: Ok(Game {
             score,
             counts,
@@ -493,11 +506,20 @@ fn the_shipped_tournaments_can_be_played() {
     }) {
         let tournament =
             load_file::<Tournament>(&file).unwrap_or_else(|problems| panic!("{problems}"));
-        let plan = Plan::new(&Tournament {
+        let all = Tournament {
             games: 2,
             ..tournament
-        })
-        .unwrap_or_else(|problems| panic!("{problems}"));
+        };
+        let plan = Plan::new(&all).unwrap_or_else(|problems| panic!("{problems}"));
+        // A league would take minutes: two entries meet each other in every sea.
+        let plan = match plan.games() > 100 {
+            true => Plan::new(&Tournament {
+                entries: all.entries[..2].to_vec(),
+                ..all
+            }),
+            false => Ok(plan),
+        };
+        let plan = plan.unwrap_or_else(|problems| panic!("{problems}"));
         let report = Report::new(&plan, &records(&plan, 2));
         assert_eq!(
             (report.seeds_counted, report.failures.len()),
@@ -505,5 +527,103 @@ fn the_shipped_tournaments_can_be_played() {
             "{}",
             file.display()
         );
+    }
+}
+
+#[test]
+fn each_sea_has_results_of_its_own_and_together_they_are_the_report() {
+    const CLOSE: f64 = 1e-6;
+    let entries = tournament("pav01_vs_pav01", 10, &["idle", "pav01", "learned"]);
+    let plan = Plan::new(&Tournament {
+        seas: ["calm", "gale"]
+            .map(|sea| shipped(&format!("seas/{sea}.toml")))
+            .to_vec(),
+        ..entries
+    })
+    .unwrap();
+    assert_eq!((plan.games_per_seed(), plan.games()), (12, 60));
+    let matches: Vec<Match> = (0..plan.games()).map(|i| plan.match_at(i).0).collect();
+    let places: Vec<usize> = matches.iter().map(|of| plan.place_of(*of)).collect();
+    assert_eq!(places, (0..60).collect::<Vec<_>>());
+    let pairings = plan.pairings();
+    assert_ne!(pairings[0], pairings[6], "different seas, different games");
+    // In calm water each entry beats the next; in a gale, the earlier entry wins.
+    let record = |of: &Match| {
+        let [one, other] = of.sides;
+        let is_won = match of.sea {
+            0 => (one + 1) % 3 == other,
+            _ => one < other,
+        };
+        let score = if is_won { [2, 1] } else { [1, 2] };
+        Record {
+            of: *of,
+            ..record(of.seed, of.sides, score)
+        }
+    };
+    let report = Report::new(&plan, &matches.iter().map(record).collect::<Vec<_>>());
+    let [calm, gale] = &report.seas[..] else {
+        panic!("{:?}", report.seas)
+    };
+    assert!(calm.sea.ends_with("calm.toml") && gale.sea.ends_with("gale.toml"));
+    assert_eq!((report.games_per_pairing, &report.sea), (20, &None));
+    let [mut cycle] = <[_; 1]>::try_from(calm.cycles.clone()).unwrap();
+    let first = cycle.iter().position(|name| name == "idle_0").unwrap();
+    cycle.rotate_left(first);
+    assert_eq!(cycle, ["idle_0", "pav01_1", "learned_2"]);
+    assert!(gale.cycles.is_empty() && report.cycles.is_empty());
+    let share = |rows: &[Row], name: &str| {
+        let row = rows.iter().find(|row| row.name == name).unwrap();
+        row.nash.unwrap().share.mean
+    };
+    for (name, in_gale) in [("idle_0", 1.0), ("pav01_1", 0.0), ("learned_2", 0.0)] {
+        let found = [&calm.entries, &gale.entries].map(|rows| share(rows, name));
+        let error = (found[0] - 1.0 / 3.0).abs().max((found[1] - in_gale).abs());
+        assert!(error < CLOSE, "{name}: {found:?}");
+    }
+    let names: Vec<&str> = gale.entries.iter().map(|row| row.name.as_str()).collect();
+    assert_eq!(names, ["idle_0", "pav01_1", "learned_2"]);
+    let all = cell(&report, "idle_0", "learned_2");
+    assert_eq!((all.games, all.wins, all.losses), (20, 10, 10));
+    assert_eq!(gale.matrix[0].games, 10);
+    assert!(report.matches[..6].iter().all(|game| game.sea == 0));
+    assert!(report.matches[6..12].iter().all(|game| game.sea == 1));
+    let kinds: Vec<EntryKind> = plan.kinds().to_vec();
+    let rules = EntryKind::RuleBased;
+    assert_eq!(kinds, [rules, rules, EntryKind::Learned]);
+}
+
+#[test]
+fn an_entry_is_a_strategy_file_a_trained_model_or_a_competition_entry() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::create_dir(dir.path().join("rival")).unwrap();
+    std::fs::write(dir.path().join("rival/solution.py"), "").unwrap();
+    let model = shipped("policies/options.onnx").canonicalize().unwrap();
+    std::fs::copy(model, dir.path().join("mine.onnx")).unwrap();
+    let game = shipped("games/mctf_2026.toml").canonicalize().unwrap();
+    let idle = shipped("strategies/idle.toml").canonicalize().unwrap();
+    let file = dir.path().join("league.toml");
+    let load = |strategies: [&str; 3]| {
+        let entry = |(i, strategy): (usize, &&str)| {
+            format!("[[entry]]\nname = \"e{i}\"\nstrategy = {strategy:?}\n")
+        };
+        let entries: String = strategies.iter().enumerate().map(entry).collect();
+        let planner = "kind = \"planner\"\n";
+        std::fs::write(&file, format!("game = {game:?}\n{entries}{planner}")).unwrap();
+        load_file::<Tournament>(&file)
+    };
+    let idle = idle.to_str().unwrap();
+    let tournament = load(["host:rival", "mine.onnx", idle]);
+    let plan = Plan::new(&tournament.unwrap_or_else(|problems| panic!("{problems}"))).unwrap();
+    assert_eq!(
+        plan.kinds(),
+        [EntryKind::Public, EntryKind::Learned, EntryKind::Planner]
+    );
+    for (wrong, why) in [
+        ("host:none", "there is no solution.py in"),
+        ("none.onnx", "there is no file"),
+    ] {
+        let problems = load([wrong, "mine.onnx", idle]).unwrap_err().to_string();
+        assert!(problems.contains(why), "{problems}");
+        assert!(problems.contains("league.toml:"), "{problems}");
     }
 }

@@ -4,7 +4,7 @@ use super::{Scenario, StartPosition, Vehicle};
 use crate::link::Link;
 use crate::sea::{Gusts, Sea};
 use crate::sensor::{Compass, Gps, Imu, Sensors};
-use crate::strategy::Assignment;
+use crate::strategy::{Assignment, Task};
 use primitives::time::SimTime;
 use rules::Sharing;
 
@@ -16,6 +16,7 @@ impl Scenario {
         self.recipe.is_some()
             || self.vehicles.iter().any(starts_somewhere)
             || self.deals_roles()
+            || self.samples_actions()
             || self.rules.power_play > SimTime::ZERO
             || is_chance(self.rules.tag_probability)
             || is_random_sea(&self.sea)
@@ -39,6 +40,16 @@ impl Scenario {
                 && others.count() > 0
         };
         self.vehicles.iter().enumerate().any(fellows)
+    }
+
+    /// Whether a policy draws its actions. A competition entry may draw too.
+    fn samples_actions(&self) -> bool {
+        let roles = self.strategies.iter().flat_map(|strategy| &strategy.roles);
+        let mut behaviours = roles.flat_map(|role| &role.behaviours);
+        behaviours.any(|behaviour| match &behaviour.task {
+            Task::Policy(policy) => policy.sampled || policy.host.is_some(),
+            _ => false,
+        })
     }
 }
 

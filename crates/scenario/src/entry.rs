@@ -44,6 +44,24 @@ pub fn policy_path(model: &Path) -> PathBuf {
     }
 }
 
+/// The strategy file that a path means: itself, the strategy of a model, or that of the entry in a
+/// folder (`is_host`).
+///
+/// # Errors
+/// If there is no such model or entry.
+pub(super) fn strategy_file(path: &Path, is_host: bool) -> Result<PathBuf, String> {
+    if is_host {
+        return strategy_path(&path.to_string_lossy());
+    }
+    if path.extension().is_none_or(|end| end != "onnx") {
+        return Ok(path.to_owned());
+    }
+    if path.is_file() || built_in(path).is_some() {
+        return Ok(policy_path(path));
+    }
+    Err(format!("there is no file {}", path.display()))
+}
+
 /// Whether a path comes from [`strategy_path`] or [`policy_path`].
 pub fn is_strategy_path(path: &Path) -> bool {
     let is_host = path.extension().is_some_and(|end| end == HOST);

@@ -1,6 +1,7 @@
 //! Reads a file by path: its content, bases, merging, and validation by its schema.
 
 use super::diagnostics::{NAME_EXPECTED, is_name};
+use super::entry;
 use super::kind::{Kind, ScenarioFile};
 use super::loader::Loader;
 use super::schema::declared;
@@ -104,11 +105,23 @@ impl<T> Document<'_, T> {
         self.loader.read(&file, Some(self.at(path)), F::NAME)
     }
 
-    /// Like [`Document::referenced`], but also replaces `reference` with the path it refers to.
+    /// Like [`Document::referenced`], but also replaces `reference` with the path it refers to. A
+    /// strategy may also be a trained model, `FILE.onnx`, or a competition entry, `host:FOLDER`.
     pub fn resolved<F: ScenarioFile>(&self, path: &str, reference: &mut PathBuf) -> Option<F> {
-        let file = self.referenced(path, &*reference);
-        *reference = self.resolve(path, &*reference);
-        file
+        let given = reference.to_string_lossy().into_owned();
+        let host = given.strip_prefix("host:");
+        *reference = self.resolve(path, host.unwrap_or(&given));
+        self.is_sound(path).then_some(())?;
+        if F::NAME == Kind::STRATEGY.name() {
+            match entry::strategy_file(reference, host.is_some()) {
+                Ok(file) => *reference = file,
+                Err(why) => {
+                    self.note(path, why);
+                    return None;
+                }
+            }
+        }
+        self.loader.read(reference, Some(self.at(path)), F::NAME)
     }
 
     /// Whether no fault was found in the file, or in anything checked since it was read.

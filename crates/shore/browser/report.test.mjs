@@ -60,7 +60,7 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   assert.equal(cells.length, report.matrix.length);
   const rows = await sight.get(() => [...document.querySelectorAll('.ratings tbody tr')].map((row) => [...row.children].map((each) => each.textContent)));
   // The same order as on the terminal; two seeds are too few for intervals.
-  assert.deepEqual(rows.map((row) => [row[1], row[2], row[3], row[5]]),
+  assert.deepEqual(rows.map((row) => [row[1], row[2], row[3], row[7]]),
     report.entries.map(({ name, rating, wins }) => [name.replaceAll('_', ' '), rating.elo.toFixed(0), 'too few seeds', String(wins)]));
   assert(!/±/.test(await sight.text('.ratings')), 'no intervals');
 
@@ -108,7 +108,7 @@ test('the ratings are sorted by any column, and each entry has its opponents, it
   assert.match((await column('.ratings', 3)).join(), /^\d+ to \d+/, 'five seeds have intervals');
   await sort('Tags');
   const byTags = [...report.entries].sort((a, b) => b.tags.mean - a.tags.mean).map(({ tags }) => tags.mean.toFixed(2));
-  const tags = async () => (await column('.ratings', 11)).map((text) => text.split(' ')[0]);
+  const tags = async () => (await column('.ratings', 13)).map((text) => text.split(' ')[0]);
   assert.deepEqual(await tags(), byTags);
   await sort('Tags');
   assert.deepEqual(await tags(), byTags.toReversed());
@@ -176,6 +176,51 @@ test('faults in a report or game are explained in text', async (t) => {
   const bare = await Sight.load(t, browser, `${await view(t, path)}#row=strategy_4&column=pav01`);
   await bare.until('the page says so', () => /Games cannot be watched/.test(document.getElementById('remarks').textContent));
   assert.equal(await bare.get(() => document.querySelectorAll('.watch').length), 0);
+});
+
+test('a league is limited to a sea or a kind, and shows who beats whom and every cycle', async (t) => {
+  const place = folder(t);
+  const game = gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 20');
+  const file = join(place, 'short.toml');
+  const seas = ['calm', 'moderate_breeze'].map((sea) => `"${scenario(`seas/${sea}.toml`)}"`);
+  writeFileSync(file, `game = "${game}"\nseas = [${seas}]\ngames = 10\n${['strategy_4', 'pav01', 'idle'].map(entry).join('')}kind = "planner"\n`);
+  const league = join(place, 'league');
+  await squall(t, 'league', '--file', file, '--folder', league);
+  // Results that form a cycle in calm water, whatever the games were.
+  const path = join(league, 'report.json');
+  const report = readJson(path);
+  const cycle = ['strategy_4', 'pav01', 'idle'];
+  const beats = (row, column) => cycle[(cycle.indexOf(row) + 1) % 3] === column;
+  for (const cell of report.seas[0].matrix) cell.won_of_decided = beats(cell.row, cell.column) ? { mean: 0.9, low: 0.8, high: 1 } : { mean: 0.1, low: 0, high: 0.2 };
+  report.seas[0].cycles = [cycle];
+  writeFileSync(path, JSON.stringify(report));
+  const sight = await Sight.load(t, browser, await view(t, league));
+  await sight.page.waitForSelector('#beats .node');
+  await sight.page.selectOption('#filter-sea', 'calm');
+  await sight.until('the arrows are those of calm water', () => document.querySelectorAll('#beats .arrow').length === 3);
+  const arrows = () => sight.get(() => [...document.querySelectorAll('#beats .arrow')].map(({ dataset }) => `${dataset.from} ${dataset.to}`).sort());
+  assert.deepEqual(await arrows(), ['idle strategy_4', 'pav01 idle', 'strategy_4 pav01']);
+  const upsets = await sight.get(() => document.querySelectorAll('#beats .upset').length);
+  assert(upsets === 1 || upsets === 2, 'a cycle contradicts every order');
+  await sight.press('.cycles button');
+  assert.equal(await sight.get(() => document.querySelectorAll('#beats .arrow.cycle').length), 3);
+  assert.equal(await sight.text('.cycles button'), 'strategy 4 → pav01 → idle → strategy 4');
+  await sight.page.hover('#beats .node circle');
+  assert.equal(await sight.get(() => document.querySelectorAll('#beats .arrow.won').length), 1);
+  assert.deepEqual(await sight.get(faint), []);
+  // Only games in calm water are listed; all seas have twice as many, and name their sea.
+  await sight.press('.matrix button[aria-label^="strategy 4 against pav01:"]');
+  const listed = () => sight.get(() => [...document.querySelectorAll('#games tbody tr')].map((row) => row.children[3].textContent));
+  assert.equal((await listed()).length, 10);
+  await sight.page.selectOption('#filter-sea', '');
+  await sight.until('all games are listed', () => document.querySelectorAll('#games tbody tr').length === 20);
+  assert.deepEqual([...new Set(await listed())], ['calm', 'moderate breeze']);
+  await sight.page.selectOption('#filter-kind', 'planner');
+  const names = await sight.get(() => [...document.querySelectorAll('.ratings tbody th')].map((each) => each.textContent));
+  assert.deepEqual(names, ['idle']);
+  assert.equal(await sight.get(() => document.querySelectorAll('.matrix tbody tr').length), 1);
+  await sight.page.reload();
+  await sight.until('the address keeps the kind', () => document.querySelectorAll('.ratings tbody tr').length === 1);
 });
 
 test('a new league entry plays only its own games, and the folder is shown', async (t) => {

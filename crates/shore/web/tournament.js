@@ -1,8 +1,9 @@
-// A tournament or a league: ratings, also over time, head-to-head results, each entry's results, and the games of two entries, which can be
-// watched.
+// A tournament or a league: ratings, also over time, who beats whom, each entry's results, and the games of two entries, which can be watched.
+// All of it can be limited to a sea, or to a kind of entry.
 
 import { addressOfGame, keepAddress } from './address.js';
 import { CurveChart } from './curve_chart.js';
+import { Dominance } from './dominance.js';
 import { cell, head, sortedTable, tableOf, watch } from './table.js';
 import { clockShort, make, number, options, plain, show, stem } from './words.js';
 
@@ -28,6 +29,15 @@ export class Tournament {
     this.entry = make('section');
     this.entry.id = 'entry';
     this.orders = { ratings: { column: 0, down: false }, entry: { column: 6, down: false } };
+    this.beats = new Dominance((entry) => this.addressOf(entry));
+    this.filters = make('div', 'choose');
+    this.filters.id = 'filters';
+    this.selects = { kind: make('select'), sea: make('select') };
+    for (const [key, select] of Object.entries(this.selects)) {
+      select.id = `filter-${key}`;
+      select.addEventListener('change', () => this.limit(key, select.value));
+      this.filters.append(make('label', '', '', make('span', '', key === 'sea' ? 'Sea ' : 'Kind '), select));
+    }
     this.matrix = make('section');
     this.games = make('section');
     this.games.id = 'games';
@@ -37,7 +47,7 @@ export class Tournament {
     options(this.filter, RESULTS);
     this.filter.addEventListener('change', () => this.drawGames());
     addEventListener('hashchange', () => this.fromAddress());
-    place.replaceChildren(this.ratings, this.entry, this.history, this.matrix, this.games);
+    place.replaceChildren(this.filters, this.ratings, this.entry, this.beats.box, this.history, this.matrix, this.games);
   }
 
   /** Whether more data may come: never, because the report is complete. */
@@ -48,13 +58,16 @@ export class Tournament {
   tell({ report, unplayable }) {
     this.report = report;
     this.unplayable = unplayable;
-    this.entries = [...report.entries].sort((a, b) => b.rating.elo - a.rating.elo);
-    this.cells = new Map(report.matrix.map((each) => [`${each.row} ${each.column}`, each]));
-    this.drawRatings();
-    this.drawMatrix();
+    this.seas = report.seas ?? [];
+    this.kinds = [...new Set(report.entries.map(({ kind }) => kind))];
+    options(this.selects.sea, [['', 'all'], ...this.seas.map(({ sea }) => [stem(sea), plain(stem(sea))])]);
+    options(this.selects.kind, [['', 'all'], ...this.kinds.map((kind) => [kind, plain(kind)])]);
+    show(this.selects.sea.parentElement, this.seas.length > 0);
+    show(this.selects.kind.parentElement, this.kinds.length > 1);
+    this.shown = null;
     this.fromAddress();
     const played = report.games_unplayed > 0 ? `, ${report.games_unplayed} games not played` : '';
-    const facts = `${plain(stem(report.game))}${report.sea ? `, sea ${plain(stem(report.sea))}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
+    const facts = `${plain(stem(report.game))}${[report.sea, ...this.seas.map(({ sea }) => sea)].filter(Boolean).map((sea) => `, ${plain(stem(sea))}`).join('')}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
       + `${report.seeds_counted} seeds from ${report.seed}${played}. Squall ${report.version} (${report.commit || 'unknown'}).`;
     return { name: report.tournament, facts, remarks: this.remarks() };
   }
@@ -88,6 +101,37 @@ export class Tournament {
     return `#${words}`;
   }
 
+  /** Limits what is shown, and puts the limit into the address. */
+  limit(key, value) {
+    const words = new URLSearchParams(location.hash.slice(1));
+    if (value === '') words.delete(key);
+    else words.set(key, value);
+    history.replaceState(null, '', `#${words}`);
+    this.fromAddress();
+  }
+
+  /** Shows the results in the address's sea, of entries of its kind. */
+  pick(words) {
+    const sea = this.seas.findIndex((each) => stem(each.sea) === words.get('sea'));
+    const kind = this.kinds.includes(words.get('kind')) ? words.get('kind') : '';
+    const shown = `${sea} ${kind}`;
+    if (this.shown === shown) return;
+    const view = this.seas[sea] ?? this.report;
+    Object.assign(this, { shown, sea, kind, view });
+    this.selects.sea.value = sea < 0 ? '' : stem(this.seas[sea].sea);
+    this.selects.kind.value = kind;
+    this.entries = [...view.entries].sort((a, b) => b.rating.elo - a.rating.elo);
+    this.cells = new Map(view.matrix.map((each) => [`${each.row} ${each.column}`, each]));
+    this.drawRatings();
+    this.drawMatrix();
+    this.beats.take({ ...view, entries: this.entries }, kind);
+  }
+
+  /** Whether an entry is of the chosen kind. */
+  isShown(entry) {
+    return this.kind === '' || entry.kind === this.kind;
+  }
+
   linkTo(entry, classes = '') {
     const link = make('a', classes, plain(entry));
     link.href = this.addressOf(entry);
@@ -109,19 +153,25 @@ export class Tournament {
       return make('td', 'wide', '', box);
     };
     const place = new Map(entries.map((entry, i) => [entry, i + 1]));
+    const nash = entries.every((entry) => entry.nash);
+    const share = (of) => `${number(100 * of, 0)} %`;
+    const part = ({ mean, low, high }, words) => make('td', 'number', words(mean), make('small', '', this.hasFew || low == null ? '' : ` ${words(low)} to ${words(high)}`));
     const count = (text, key) => ({ text, classes: 'number', key: (entry) => entry[key], cell: (entry) => cell(String(entry[key]), 'number') });
     const columns = [
       { text: 'Place', classes: 'number', rises: true, key: (entry) => place.get(entry), cell: (entry) => cell(String(place.get(entry)), 'number') },
       { text: 'Entry', key: ({ name }) => name, cell: ({ name }) => { const th = head('row', ''); th.append(this.linkTo(name)); return th; } },
+      ...(this.kinds.length > 1 ? [{ text: 'Kind', key: ({ kind }) => kind, cell: ({ kind }) => cell(plain(kind)) }] : []),
       { text: 'Rating', classes: 'number', key: ({ rating }) => rating.elo, cell: ({ rating }) => cell(number(rating.elo, 0), 'number strong') },
       { text: '95 %', classes: 'number', cell: ({ rating }) => cell(this.interval(rating), 'number') },
       { text: '', cell: ({ rating }) => bar(rating) },
+      ...(nash ? [{ text: 'Nash share', classes: 'number', key: (entry) => entry.nash.share.mean, cell: (entry) => part(entry.nash.share, share) },
+        { text: 'against it', classes: 'number', key: (entry) => entry.nash.lead.mean, cell: (entry) => part(entry.nash.lead, (of) => number(Math.round(of) + 0, 0)) }] : []),
       count('Won', 'wins'), count('Drawn', 'draws'), count('Lost', 'losses'),
       ...COUNTS.map(([text, key]) => ({ text, classes: 'number', key: (entry) => entry[key].mean, cell: (entry) => this.mean(entry[key]) })),
     ];
-    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', 'Elo: a lead of 100 points means winning 64 %, 200 points 76 %. Columns from Points on '
+    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', `Elo: a lead of 100 points means winning 64 %, 200 points 76 %. ${nash ? 'The Nash share is the entry’s part in the mixture of entries that no entry beats, followed by its Elo points against that mixture: cycles and copies of entries do not change it. ' : ''}Columns from Points on `
       + `are means per game${this.hasFew ? '' : ' with 95 % confidence intervals over seeds'}. An entry’s name leads to its opponents and results.`),
-    sortedTable('Ratings', columns, entries, this.orders.ratings, () => this.drawRatings(), 'list ratings'));
+    sortedTable('Ratings', columns, entries.filter((entry) => this.isShown(entry)), this.orders.ratings, () => this.drawRatings(), 'list ratings'));
   }
 
   interval({ low, high }) {
@@ -136,9 +186,10 @@ export class Tournament {
   /** The ratings after a growing number of games: of all entries, or of one. */
   drawHistory() {
     const { history = [] } = this.report;
-    show(this.history, history.length > 1);
+    show(this.history, history.length > 1 && this.sea < 0);
     const curves = this.report.entries.map(({ name }, i) => ({ name, colour: i % 4, style: Math.floor(i / 4), xs: history.map(({ games }) => games), values: history.map(({ elo }) => elo[i]) }));
-    const shown = this.chosenEntry ? curves.filter(({ name }) => name === this.chosenEntry.name) : curves;
+    const ofKind = curves.filter((_, i) => this.isShown(this.report.entries[i]));
+    const shown = this.chosenEntry ? curves.filter(({ name }) => name === this.chosenEntry.name) : ofKind;
     this.overTime.take(shown, { title: 'games played', words: (games) => `${Math.round(games)} games` });
   }
 
@@ -199,7 +250,7 @@ export class Tournament {
       this.buttons.set(`${row.name} ${column.name}`, button);
       return make('td', '', '', button);
     };
-    const rows = entries.map((row) => make('tr', '', '', head('row', plain(row.name)), ...entries.map((column) => of(row, column))));
+    const rows = entries.filter((row) => this.isShown(row)).map((row) => make('tr', '', '', head('row', plain(row.name)), ...entries.map((column) => of(row, column))));
     this.matrix.replaceChildren(make('h2', '', 'Head to head'), make('p', 'faint', 'How often the row beats the column, and the mean points difference per game. '
       + 'Click a cell for its games.'), tableOf('Head to head', [[''], ...entries.map(({ name }) => [plain(name)])], rows, 'matrix'));
   }
@@ -216,18 +267,19 @@ export class Tournament {
 
   fromAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
-    const before = this.chosenEntry ?? null;
+    const before = this.chosenEntry?.name;
     keepAddress();
+    this.pick(words);
     const chosen = this.cells.has(`${words.get('row')} ${words.get('column')}`) ? [words.get('row'), words.get('column')] : null;
     this.buttons.forEach((button, key) => button.setAttribute('aria-pressed', String(key === chosen?.join(' '))));
     this.chosen = chosen;
     this.chosenEntry = this.entries.find(({ name }) => name === words.get('entry')) ?? null;
     this.listed = LISTED;
-    for (const section of [this.ratings, this.matrix]) show(section, this.entries.length > 0 && !this.chosenEntry);
+    for (const section of [this.ratings, this.beats.box, this.matrix]) show(section, this.entries.length > 0 && !this.chosenEntry);
     this.drawEntry();
     this.drawHistory();
     this.drawGames();
-    if (this.chosenEntry !== before) scrollTo(0, 0);
+    if (this.chosenEntry?.name !== before) scrollTo(0, 0);
   }
 
   /** The games of the chosen two, seen from the row's entry. */
@@ -235,7 +287,7 @@ export class Tournament {
     const [row, column] = this.chosen;
     const own = ({ blue, red }) => (blue === row && red === column ? 0 : blue === column && red === row ? 1 : -1);
     const result = (winner, side) => (winner === null ? 'drawn' : winner === side ? 'won' : 'lost');
-    return this.report.matches.filter((game) => own(game) >= 0)
+    return this.report.matches.filter((game) => own(game) >= 0 && (this.sea < 0 || game.sea === this.sea))
       .map((game) => ({ ...game, side: own(game), result: result(game.winner, own(game)) }))
       .filter((game) => this.filter.value === '' || game.result === this.filter.value);
   }
@@ -267,10 +319,11 @@ export class Tournament {
     const row = (game) => {
       const [own, theirs] = [game.score[game.side], game.score[1 - game.side]];
       const label = `Watch seed ${game.seed}, ${plain(this.chosen[0])} as ${teams[game.side]}, ${own} to ${theirs}`;
-      return make('tr', `result-${game.result}`, '', this.unplayable ? cell('') : watch(addressOfGame(game.game), label), cell(String(game.seed), 'number'), cell(plain(teams[game.side] ?? '')), cell(`${own} : ${theirs}`, 'number strong'),
+      return make('tr', `result-${game.result}`, '', this.unplayable ? cell('') : watch(addressOfGame(game.game), label), cell(String(game.seed), 'number'), cell(plain(teams[game.side] ?? '')),
+        this.sea < 0 && this.seas.length > 0 ? cell(plain(stem(this.seas[game.sea].sea))) : null, cell(`${own} : ${theirs}`, 'number strong'),
         make('td', 'result', game.result), cell(clockShort(game.duration_s), 'number'));
     };
-    const heads = [[''], ['Seed', 'number'], ['Team'], ['Points', 'number'], ['Result'], ['Length', 'number']];
+    const heads = [[''], ['Seed', 'number'], ['Team'], ...(this.sea < 0 && this.seas.length > 0 ? [['Sea']] : []), ['Points', 'number'], ['Result'], ['Length', 'number']];
     const games = tableOf('Games', heads, found.slice(0, this.listed).map(row));
     show(games, found.length > 0);
     return games;

@@ -137,3 +137,26 @@ fn two_seeds_are_two_games_where_a_scenario_is_random_and_one_where_it_is_not() 
         "{random} random games, {fixed} others"
     );
 }
+
+#[test]
+fn the_seed_matters_to_a_policy_that_draws_its_actions() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("drawn.toml");
+    let model = shipped("policies/primitive_tag.onnx")
+        .canonicalize()
+        .expect("it is there");
+    let game = shipped("games/pyquaticus_2v2.toml");
+    for is_sampled in [true, false] {
+        let text = format!(
+            "base = \"policy\"\n[behaviour.learned]\nmodel = {model:?}\nsampled = {is_sampled}\n"
+        );
+        std::fs::write(&path, text).expect("it is written");
+        let overrides = Overrides {
+            strategies: [("blue".to_owned(), path.clone())].into(),
+            ..Overrides::default()
+        };
+        let scenario = load_with(&game, &overrides).unwrap_or_else(|problems| panic!("{problems}"));
+        assert_eq!(scenario.is_random(), is_sampled);
+        assert_eq!(digest(&scenario, 1) != digest(&scenario, 2), is_sampled);
+    }
+}

@@ -2,7 +2,7 @@
 
 use scenario::keys::{FilePath, Name};
 use scenario::sea::Sea;
-use scenario::strategy::Strategy;
+use scenario::strategy::{Behaviour, Strategy, Task};
 use scenario::{Document, Scenario, ScenarioFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,11 @@ pub struct Tournament {
     /// Sea file. Default: the game's.
     #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
-    /// Games per pairing, half of them on each side; odd numbers are rounded up.
+    /// Sea files, in place of `sea`: all games are played in each of them.
+    #[serde(default)]
+    #[schemars(with = "Vec<FilePath>", length(max = 16))]
+    pub seas: Vec<PathBuf>,
+    /// Games per pairing and sea, half of them on each side; odd numbers are rounded up.
     #[schemars(range(min = 2, max = 1000000), extend("default" = 200))]
     pub games: u32,
     /// First seed, incremented every two games of a pairing.
@@ -45,9 +49,64 @@ pub struct Entrant {
     /// Name in the tables.
     #[schemars(with = "Name")]
     pub name: String,
-    /// Strategy file of all its boats.
+    /// Strategy of all its boats: a strategy file, a trained model (`FILE.onnx`) or a competition
+    /// entry (`host:FOLDER`).
     #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
+    /// Group in the tables. Default: public for a competition entry, learned for a strategy with a
+    /// model, otherwise rule_based.
+    #[serde(default)]
+    pub kind: Option<EntryKind>,
+}
+
+/// How an entry decides.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum EntryKind {
+    /// By rules and behaviours.
+    #[default]
+    RuleBased,
+    /// By a trained policy.
+    Learned,
+    /// By a search over plans.
+    Planner,
+    /// A published competition entry or policy.
+    Public,
+}
+
+impl EntryKind {
+    /// Its name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            EntryKind::RuleBased => "rule_based",
+            EntryKind::Learned => "learned",
+            EntryKind::Planner => "planner",
+            EntryKind::Public => "public",
+        }
+    }
+
+    /// The default for an entry with this strategy.
+    pub(super) fn of(strategy: &Strategy) -> EntryKind {
+        let behaviours = strategy.roles.iter().flat_map(|role| &role.behaviours);
+        let kind = |behaviour: &Behaviour| match &behaviour.task {
+            Task::Policy(policy) if policy.host.is_some() => EntryKind::Public,
+            Task::Policy(policy) if policy.model.is_some() => EntryKind::Learned,
+            _ => EntryKind::RuleBased,
+        };
+        behaviours.map(kind).max().unwrap_or_default()
+    }
+}
+
+impl Tournament {
+    /// The seas in which every pairing plays; `None` is the game's own.
+    pub fn seas(&self) -> Vec<Option<&PathBuf>> {
+        if self.seas.is_empty() {
+            return vec![self.sea.as_ref()];
+        }
+        self.seas.iter().map(Some).collect()
+    }
 }
 
 impl ScenarioFile for Tournament {
@@ -61,6 +120,7 @@ impl ScenarioFile for Tournament {
         if let Some(sea) = &mut tournament.sea {
             document.resolved::<Sea>("sea", sea);
         }
+        check_seas(document, &mut tournament);
         let names = check_entries(document, &mut tournament.entries);
         if let Some(challenger) = tournament
             .challenger
@@ -75,6 +135,22 @@ impl ScenarioFile for Tournament {
             document.note("challenger", message);
         }
         document.is_faultless().then_some(tournament)
+    }
+}
+
+/// Checks and resolves the seas, whose names must differ.
+fn check_seas(document: &Document<Tournament>, tournament: &mut Tournament) {
+    let mut names = BTreeSet::new();
+    for (i, sea) in tournament.seas.iter_mut().enumerate() {
+        let path = format!("seas.{i}");
+        document.resolved::<Sea>(&path, sea);
+        if !names.insert(sea.file_stem().map(ToOwned::to_owned)) {
+            let message = format!("{} is named twice, expected different seas", sea.display());
+            document.note(&path, message);
+        }
+    }
+    if !names.is_empty() && tournament.sea.is_some() {
+        document.note("sea", "is given with seas, expected one of them");
     }
 }
 

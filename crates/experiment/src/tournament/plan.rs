@@ -1,8 +1,10 @@
 //! The games of a tournament.
 
+use super::file::EntryKind;
 use super::{Entrant, Tournament};
 use crate::jobs::{load_game, teams_of, too_many_games};
 use crate::{Packed, UnpackError};
+use primitives::TeamId;
 use scenario::{Files, Overrides, Problems, Scenario, digest_of};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -15,9 +17,21 @@ pub struct Plan {
     /// The names of the game's two teams.
     teams: Vec<String>,
     seeds: u64,
-    /// The games of each seed: the entries of the first and second team, and the scenario.
-    rounds: Vec<([usize; 2], Scenario)>,
+    /// The entries' kinds.
+    kinds: Vec<EntryKind>,
+    /// The games of each seed.
+    rounds: Vec<Round>,
     files: Arc<Files>,
+}
+
+/// A game, for every seed.
+#[derive(Clone, Debug)]
+struct Round {
+    /// The entries of the first and second team.
+    sides: [usize; 2],
+    /// Index into [`Tournament::seas`].
+    sea: usize,
+    scenario: Scenario,
 }
 
 /// One game.
@@ -27,11 +41,14 @@ pub struct Match {
     pub seed: u64,
     /// The indices of the entries that play as the first and the second team.
     pub sides: [usize; 2],
+    /// The index of the sea in [`Tournament::seas`].
+    #[serde(default)]
+    pub sea: usize,
 }
 
 impl Plan {
-    /// The games of a tournament: every entry, or the challenger, against every other entry. All
-    /// pairings play the same seeds, each of them twice with sides exchanged. An entry plays each
+    /// The games of a tournament: every entry, or the challenger, against every other entry in every
+    /// sea. All pairings play the same seeds, each of them twice with sides exchanged. An entry plays each
     /// seed only once against itself, since exchanging sides would give the same game.
     ///
     /// # Errors
@@ -43,7 +60,6 @@ impl Plan {
 
     fn of_files(tournament: &Tournament, files: Arc<Files>) -> Result<Plan, Problems> {
         let teams = teams_of(&tournament.game, &files)?;
-        let count = tournament.entries.len();
         let is_played = |sides: [usize; 2]| {
             let is_there = |name: &String| {
                 sides
@@ -52,28 +68,23 @@ impl Plan {
             };
             tournament.challenger.as_ref().is_none_or(is_there)
         };
+        let pairs = pairs(tournament).into_iter();
+        let pairs: Vec<[usize; 2]> = pairs.filter(|sides| is_played(*sides)).collect();
         let mut rounds = vec![];
-        for one in 0..count {
-            for other in (one..count).filter(|other| is_played([one, *other])) {
-                let both = [[one, other], [other, one]];
-                let sides = match (one == other, tournament.self_play) {
-                    (true, true) => &both[..1],
-                    (true, false) => &[],
-                    (false, _) => &both[..],
+        for (sea, file) in tournament.seas().into_iter().enumerate() {
+            for sides in &pairs {
+                let strategy = |entry: usize| tournament.entries[entry].strategy.clone();
+                let strategies = teams.iter().cloned().zip(sides.map(strategy)).collect();
+                let overrides = Overrides {
+                    sea: file.cloned(),
+                    strategies,
+                    ..Overrides::default()
                 };
-                for sides in sides {
-                    let strategy = |entry: usize| tournament.entries[entry].strategy.clone();
-                    let strategies = teams.iter().cloned().zip(sides.map(strategy)).collect();
-                    let overrides = Overrides {
-                        sea: tournament.sea.clone(),
-                        strategies,
-                        ..Overrides::default()
-                    };
-                    rounds.push((
-                        *sides,
-                        load_game(&tournament.game, &overrides, &files, &tournament.game)?,
-                    ));
-                }
+                rounds.push(Round {
+                    sides: *sides,
+                    sea,
+                    scenario: load_game(&tournament.game, &overrides, &files, &tournament.game)?,
+                });
             }
         }
         let seeds = u64::from(tournament.games).div_ceil(2);
@@ -81,6 +92,7 @@ impl Plan {
             tournament: tournament.clone(),
             teams,
             seeds,
+            kinds: kinds(tournament, &rounds),
             rounds,
             files,
         };
@@ -93,6 +105,11 @@ impl Plan {
     /// The tournament.
     pub fn tournament(&self) -> &Tournament {
         &self.tournament
+    }
+
+    /// The kind of each entry.
+    pub fn kinds(&self) -> &[EntryKind] {
+        &self.kinds
     }
 
     /// The names of the game's teams, first team first.
@@ -122,7 +139,11 @@ impl Plan {
     /// If `index` is out of range.
     pub fn match_at(&self, index: usize) -> (Match, &Scenario) {
         assert!(index < self.games(), "match {index} of {}", self.games());
-        let (sides, scenario) = &self.rounds[index % self.rounds.len()];
+        let Round {
+            sides,
+            sea,
+            scenario,
+        } = &self.rounds[index % self.rounds.len()];
         // Ordered by seed: a seed counts only if all its games were played. Otherwise an entry
         // would be measured against only some of its opponents, perhaps the easy ones.
         let seed = self
@@ -133,6 +154,7 @@ impl Plan {
             Match {
                 seed,
                 sides: *sides,
+                sea: *sea,
             },
             scenario,
         )
@@ -146,7 +168,7 @@ impl Plan {
         let round = self
             .rounds
             .iter()
-            .position(|(sides, _)| *sides == of.sides)
+            .position(|round| (round.sides, round.sea) == (of.sides, of.sea))
             .expect("they play each other");
         of.seed.wrapping_sub(self.tournament.seed) as usize * self.rounds.len() + round
     }
@@ -157,7 +179,7 @@ impl Plan {
     pub fn pairings(&self) -> Vec<String> {
         self.rounds
             .iter()
-            .map(|(_, scenario)| scenario.digest())
+            .map(|round| round.scenario.digest())
             .collect()
     }
 
@@ -173,6 +195,7 @@ impl Plan {
         let meant = Tournament {
             game: PathBuf::new(),
             sea: None,
+            seas: vec![PathBuf::new(); self.tournament.seas.len()],
             entries,
             ..self.tournament.clone()
         };
@@ -191,4 +214,36 @@ impl Plan {
     pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
         packed.unpack(Plan::of_files, Plan::digest)
     }
+}
+
+/// The entries of the first and second team in every game of a seed and sea.
+fn pairs(tournament: &Tournament) -> Vec<[usize; 2]> {
+    let count = tournament.entries.len();
+    let mut pairs = vec![];
+    for one in 0..count {
+        for other in one..count {
+            pairs.extend(match (one == other, tournament.self_play) {
+                (true, true) => vec![[one, one]],
+                (true, false) => vec![],
+                (false, _) => vec![[one, other], [other, one]],
+            });
+        }
+    }
+    pairs
+}
+
+/// The kind of each entry: as given, or that of the strategy with which it plays.
+fn kinds(tournament: &Tournament, rounds: &[Round]) -> Vec<EntryKind> {
+    let inferred = |entry: usize| {
+        let side = |round: &Round| round.sides.iter().position(|side| *side == entry);
+        let (round, side) = rounds
+            .iter()
+            .find_map(|round| Some((round, side(round)?)))?;
+        let mut boats = round.scenario.vehicles.iter();
+        let boat = boats.find(|boat| boat.team == TeamId(side as u8))?;
+        Some(EntryKind::of(&round.scenario.strategies[boat.strategy]))
+    };
+    let kind = |(i, entry): (usize, &Entrant)| entry.kind.or_else(|| inferred(i));
+    let entries = tournament.entries.iter().enumerate();
+    entries.map(|one| kind(one).unwrap_or_default()).collect()
 }

@@ -33,10 +33,10 @@ pub struct Meeting {
 /// The mean of all ratings.
 const MEAN_ELO: f64 = 1500.0;
 /// Elo points per factor of e in the odds: 400 / ln 10.
-const ELO: f64 = 400.0 / std::f64::consts::LN_10;
+pub(super) const ELO: f64 = 400.0 / std::f64::consts::LN_10;
 /// The prior: number of wins and losses of every entry against an average entry. Without it, an
 /// entry that wins all games would be infinitely strong.
-const PRIOR: f64 = 1.0;
+pub(super) const PRIOR: f64 = 1.0;
 /// The maximum number and length of Newton steps: beyond this length, the curvature is meaningless.
 const STEPS_MAX: usize = 200;
 const STEP_MAX: f64 = 1.0;

@@ -1,12 +1,14 @@
 //! The report of a tournament: entries, pairings, and every game.
 
+use super::file::EntryKind;
+use super::nash::Nash;
 use super::plan::Plan;
 use super::play::Record;
 use super::rating::{Meeting, Rating, ratings};
+use super::result::{self, Results, meeting};
 use crate::Packed;
 use crate::estimate::Estimate;
 use crate::pipeline::Game;
-use rules::count::Counts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -27,7 +29,7 @@ pub struct Report {
     pub commit: String,
     /// The game file.
     pub game: String,
-    /// The sea file that replaces the game's own.
+    /// The sea file that replaces the game's own, if all games have the same sea.
     pub sea: Option<String>,
     /// The names of the game's teams.
     pub teams: Vec<String>,
@@ -35,7 +37,7 @@ pub struct Report {
     pub challenger: Option<String>,
     /// The first seed.
     pub seed: u64,
-    /// The planned number of games per pairing.
+    /// The planned number of games per pairing, in all seas.
     pub games_per_pairing: u64,
     /// The number of seeds with all games played.
     pub seeds_counted: u64,
@@ -49,6 +51,14 @@ pub struct Report {
     pub entries: Vec<Row>,
     /// Each entry against each other; rows and columns are in the same order.
     pub matrix: Vec<Cell>,
+    /// Cycles of entries in which each beats the next and the last beats the first, because the 95 %
+    /// interval of its share of decisive games is above a half. There is one for each pair that is
+    /// part of any cycle.
+    #[serde(default)]
+    pub cycles: Vec<Vec<String>>,
+    /// The same in each sea, if there are several.
+    #[serde(default)]
+    pub seas: Vec<SeaReport>,
     /// The history of the ratings: after growing numbers of games, in the order in which they were
     /// played.
     #[serde(default)]
@@ -62,6 +72,19 @@ pub struct Report {
     pub plan: Option<Packed>,
 }
 
+/// The results in one sea, as in [`Report`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeaReport {
+    /// The sea file.
+    pub sea: String,
+    /// The entries, by descending rating.
+    pub entries: Vec<Row>,
+    /// Each entry against each other.
+    pub matrix: Vec<Cell>,
+    /// Cycles of entries.
+    pub cycles: Vec<Vec<String>>,
+}
+
 /// The results of an entry; means are per game.
 ///
 /// All games with the same seed have the same sea, so they are one observation: the entry's mean
@@ -72,10 +95,17 @@ pub struct Row {
     pub name: String,
     /// Its strategy file.
     pub strategy: String,
+    /// Its kind.
+    #[serde(default)]
+    pub kind: EntryKind,
     /// The number of games it played; a game against itself is counted from both sides.
     pub games: u64,
     /// Its strength, from wins against all opponents.
     pub rating: Rating,
+    /// Its part in the equilibrium between all entries; `None` if a pairing is not played, as with a
+    /// challenger.
+    #[serde(default)]
+    pub nash: Option<Nash>,
     /// Points.
     pub score: Estimate,
     /// Flags grabbed.
@@ -147,6 +177,9 @@ pub struct Seeds {
 pub struct MatchRow {
     /// Its index in the order of the tournament.
     pub game: usize,
+    /// Index into [`Report::seas`].
+    #[serde(default)]
+    pub sea: usize,
     /// The first team's entry.
     pub blue: String,
     /// The second team's entry.
@@ -176,13 +209,6 @@ pub struct Failure {
     pub why: String,
 }
 
-/// A game from the point of view of one entry.
-struct Appearance<'a> {
-    game: &'a Game,
-    side: usize,
-    opponent: usize,
-}
-
 impl Report {
     /// The report for the records of a plan's games, in the order in which they were played.
     pub fn new(plan: &Plan, played: &[Record]) -> Report {
@@ -199,19 +225,12 @@ impl Report {
         let counted: BTreeSet<u64> = seeds.collect();
         let is_left_out =
             |record: &&Record| record.result.is_ok() && !counted.contains(&record.of.seed);
-        let mut order: Vec<(usize, Row)> = match whole.is_empty() {
-            true => vec![],
-            false => {
-                let rated = ratings(tournament.entries.len(), &meetings(&whole));
-                rated
-                    .into_iter()
-                    .enumerate()
-                    .map(|(entry, rating)| (entry, row(plan, &whole, entry, rating)))
-                    .collect()
-            }
-        };
-        order.sort_by(|(_, a), (_, b)| b.rating.elo.total_cmp(&a.rating.elo));
-        let ranks: Vec<usize> = order.iter().map(|(entry, _)| *entry).collect();
+        let Results {
+            ranks,
+            rows,
+            matrix,
+            cycles,
+        } = Results::new(plan, &whole);
         let failures = records.iter().filter_map(|record| {
             let why = record.result.as_ref().err()?.clone();
             Some(Failure {
@@ -233,6 +252,7 @@ impl Report {
             let game = plan.place_of(record.of);
             Some(MatchRow {
                 game,
+                sea: record.of.sea,
                 blue,
                 red,
                 seed: record.of.seed,
@@ -247,45 +267,32 @@ impl Report {
             version: primitives::VERSION.to_owned(),
             commit: String::new(),
             game: tournament.game.display().to_string(),
-            sea: tournament.sea.as_ref().map(|sea| sea.display().to_string()),
+            sea: (tournament.seas().len() == 1)
+                .then(|| tournament.seas()[0].map(|sea| sea.display().to_string()))
+                .flatten(),
             teams: plan.teams().to_vec(),
             challenger: tournament.challenger.clone(),
             seed: tournament.seed,
-            games_per_pairing: 2 * plan.seeds(),
+            games_per_pairing: 2 * plan.seeds() * tournament.seas().len() as u64,
             seeds_counted: whole.len() as u64,
             games_unplayed: (plan.games() - records.len()) as u64,
             games_left_out: records.iter().filter(is_left_out).count() as u64,
             rate: None,
-            matrix: matrix(plan, &whole, &ranks),
+            matrix,
+            cycles,
+            seas: result::seas(plan, &whole),
             history: history(
                 played
                     .iter()
                     .filter(|record| counted.contains(&record.of.seed)),
                 &ranks,
             ),
-            entries: order.into_iter().map(|(_, row)| row).collect(),
+            entries: rows,
             failures: failures.collect(),
             matches: matches.collect(),
             plan: Some(plan.pack()),
         }
     }
-}
-
-/// The entries of a game, and its result.
-fn meeting(record: &Record) -> Option<Meeting> {
-    let winner = record.result.as_ref().ok()?.winner;
-    Some(Meeting {
-        sides: record.of.sides,
-        share: winner.map_or(0.5, |side| if side == 0 { 1.0 } else { 0.0 }),
-    })
-}
-
-/// The pairings and their results, grouped by seed.
-fn meetings(rounds: &[&[Record]]) -> Vec<Vec<Meeting>> {
-    rounds
-        .iter()
-        .map(|round| round.iter().filter_map(meeting).collect())
-        .collect()
 }
 
 /// The ratings after a growing number of games, of the entries in `ranks` that had played by then.
@@ -316,115 +323,4 @@ fn history<'a>(played: impl Iterator<Item = &'a Record>, ranks: &[usize]) -> Vec
         .step_by(step)
         .chain((!all.is_empty()).then_some(all.len()));
     points.map(after).collect()
-}
-
-/// An entry's games with a seed. A game against itself appears twice, once from each side.
-fn appearances(round: &[Record], entry: usize) -> impl Iterator<Item = Appearance<'_>> {
-    round.iter().flat_map(move |record| {
-        let sides = (0..2).filter(move |side| record.of.sides[*side] == entry);
-        sides.filter_map(move |side| {
-            let game = record.result.as_ref().ok()?;
-            Some(Appearance {
-                game,
-                side,
-                opponent: record.of.sides[1 - side],
-            })
-        })
-    })
-}
-
-/// The results of an entry. Each round is one observation.
-fn row(plan: &Plan, rounds: &[&[Record]], entry: usize, rating: Rating) -> Row {
-    let entrant = &plan.tournament().entries[entry];
-    let estimate = |value: &dyn Fn(&Appearance<'_>) -> u32| {
-        let observation = |round: &&[Record]| {
-            let values: Vec<f64> = appearances(round, entry)
-                .map(|appearance| f64::from(value(&appearance)))
-                .collect();
-            values.iter().sum::<f64>() / values.len() as f64
-        };
-        Estimate::of(&rounds.iter().map(observation).collect::<Vec<f64>>())
-    };
-    let count = |of: fn(&Counts) -> u32| estimate(&|a: &Appearance<'_>| of(&a.game.counts[a.side]));
-    let all = || rounds.iter().flat_map(|round| appearances(round, entry));
-    let [wins, draws, losses] = standing(all());
-    Row {
-        name: entrant.name.clone(),
-        strategy: entrant.strategy.display().to_string(),
-        games: all().count() as u64,
-        rating,
-        score: estimate(&|a: &Appearance<'_>| a.game.score[a.side]),
-        grabs: count(|counts| counts.grabs),
-        captures: count(|counts| counts.captures),
-        tags: count(|counts| counts.tags),
-        tagged: count(|counts| counts.tagged),
-        out_of_bounds: count(|counts| counts.out_of_bounds),
-        collisions: count(|counts| counts.collisions),
-        wins,
-        draws,
-        losses,
-    }
-}
-
-/// The numbers of games won, drawn and lost.
-fn standing<'a>(appearances: impl Iterator<Item = Appearance<'a>>) -> [u64; 3] {
-    appearances.fold(
-        [0; 3],
-        |[wins, draws, losses], appearance| match appearance.game.winner {
-            None => [wins, draws + 1, losses],
-            Some(winner) if winner == appearance.side => [wins + 1, draws, losses],
-            Some(_) => [wins, draws, losses + 1],
-        },
-    )
-}
-
-/// The results of each entry in `ranks` against each of its opponents.
-fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell> {
-    let (Some(first), Some(last)) = (rounds.first(), rounds.last()) else {
-        return vec![];
-    };
-    let seeds = Seeds {
-        first: first[0].of.seed,
-        last: last[0].of.seed,
-    };
-    let name = |entry: usize| plan.tournament().entries[entry].name.clone();
-    let pairs = ranks
-        .iter()
-        .flat_map(|row| ranks.iter().map(move |column| (*row, *column)));
-    let cell = |(row, column): (usize, usize)| {
-        let of_round =
-            |round: &&'a [Record]| appearances(round, row).filter(move |a| a.opponent == column);
-        let all = || rounds.iter().flat_map(of_round);
-        let games = all().count() as u64;
-        let decided = |round: &&'a [Record]| {
-            let [wins, _, losses] = standing(of_round(round));
-            (wins as f64, (wins + losses) as f64)
-        };
-        let won_of_decided = Estimate::of_ratio(&rounds.iter().map(decided).collect::<Vec<_>>());
-        let points = |side: usize| {
-            let of = |a: Appearance<'_>| {
-                f64::from(a.game.score[if side == 0 { a.side } else { 1 - a.side }])
-            };
-            all().map(of).sum::<f64>() / games as f64
-        };
-        let score = [points(0), points(1)];
-        let [wins, draws, losses] = standing(all());
-        let score_difference = score[0] - score[1];
-        let row = name(row);
-        let column = name(column);
-        let cell = Cell {
-            row,
-            column,
-            games,
-            wins,
-            draws,
-            losses,
-            won_of_decided,
-            score,
-            score_difference,
-            seeds,
-        };
-        (games > 0).then_some(cell)
-    };
-    pairs.filter_map(cell).collect()
 }

@@ -1,6 +1,6 @@
 //! The report of a tournament as tables, in text form and as CSV.
 
-use super::rating::Rating;
+use super::rating_table::{cycles, ratings};
 use super::report::{Cell, Report, Row};
 use crate::estimate::Estimate;
 use crate::jobs::strategy_option;
@@ -27,10 +27,9 @@ pub const WIDTH: usize = 120;
 /// command stays on one line.
 pub fn text(report: &Report, columns: usize) -> String {
     let mut text = String::new();
-    let sea = report
-        .sea
-        .as_ref()
-        .map_or(String::new(), |sea| format!(", sea {sea}"));
+    let own = report.sea.iter().map(|sea| format!(", sea {sea}"));
+    let seas = report.seas.iter().map(|sea| format!(", {}", sea.sea));
+    let sea: String = own.chain(seas).collect();
     add_line(
         &mut text,
         format_args!("{}: {}{sea}", report.tournament, report.game),
@@ -61,7 +60,8 @@ pub fn text(report: &Report, columns: usize) -> String {
                 ),
             );
             entries(&mut text, report, columns);
-            ratings(&mut text, report);
+            ratings(&mut text, report, columns);
+            cycles(&mut text, report);
             match &report.challenger {
                 Some(challenger) => pairings(&mut text, report, challenger),
                 None => matrix(&mut text, report, columns),
@@ -73,7 +73,7 @@ pub fn text(report: &Report, columns: usize) -> String {
     text
 }
 
-fn names(report: &Report) -> Vec<&str> {
+pub(super) fn names(report: &Report) -> Vec<&str> {
     report.entries.iter().map(|row| row.name.as_str()).collect()
 }
 
@@ -88,7 +88,7 @@ fn width(names: &[&str]) -> usize {
 }
 
 /// A heading with a cell for each entry.
-type Cells = (String, Vec<String>);
+pub(super) type Cells = (String, Vec<String>);
 
 /// A line for each entry.
 fn entries(text: &mut String, report: &Report, columns: usize) {
@@ -109,12 +109,12 @@ fn entries(text: &mut String, report: &Report, columns: usize) {
     );
 }
 
-fn cells(report: &Report, heading: &str, of: impl Fn(&Row) -> String) -> Cells {
+pub(super) fn cells(report: &Report, heading: &str, of: impl Fn(&Row) -> String) -> Cells {
     (heading.to_owned(), report.entries.iter().map(of).collect())
 }
 
 /// A table with a line for each entry. Columns beyond the width are moved to a second table below.
-fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
+pub(super) fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
     let name = width(names);
     let wide = |(heading, cells): &Cells| {
         cells
@@ -238,30 +238,6 @@ fn beaten(cell: &Cell) -> String {
     )
 }
 
-/// The ratings of the entries.
-fn ratings(text: &mut String, report: &Report) {
-    let width = width(&names(report));
-    add_line(
-        text,
-        format_args!(
-            "\nElo ratings with 95 % intervals: a lead of 100 means an expected score of 64 %"
-        ),
-    );
-    for Row {
-        name,
-        rating: Rating { elo, low, high },
-        ..
-    } in &report.entries
-    {
-        let interval = low
-            .zip(*high)
-            .map_or("too few seeds".to_owned(), |(low, high)| {
-                format!("{low:.0} to {high:.0}")
-            });
-        add_line(text, format_args!("{name:width$}{elo:>7.0}{interval:>16}"));
-    }
-}
-
 /// The games missing from the tables.
 fn missing(text: &mut String, report: &Report) {
     /// The maximum number of failures listed.
@@ -309,9 +285,11 @@ fn missing(text: &mut String, report: &Report) {
 
 /// The command that replays one of the games.
 fn again(text: &mut String, report: &Report) {
-    let sea = report.sea.as_ref().map_or(String::new(), |sea| {
-        format!(" --sea {}", argument_for(sea.as_ref()))
-    });
+    let sea = match (&report.sea, report.seas.is_empty()) {
+        (Some(sea), _) => format!(" --sea {}", argument_for(sea.as_ref())),
+        (None, true) => String::new(),
+        (None, false) => " --sea SEA".to_owned(),
+    };
     let sides: String = report
         .teams
         .iter()
@@ -320,7 +298,14 @@ fn again(text: &mut String, report: &Report) {
         .collect();
     add_line(
         text,
-        format_args!("\nto replay one of these games, insert strategy files for A and B:"),
+        format_args!(
+            "\nto replay one of these games, insert strategy files for A and B{}:",
+            if report.seas.is_empty() {
+                ""
+            } else {
+                ", and a sea"
+            }
+        ),
     );
     let game = argument_for(report.game.as_ref());
     add_line(
