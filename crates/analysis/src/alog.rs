@@ -5,7 +5,7 @@
 //! local metres, x east and y north of the datum; headings are compass degrees. A file has a header
 //! of five lines, then rows in time order: seconds since `LOGSTART` in 15 columns with 5 decimal
 //! places, the variable in 20, the source in 15, and the value. Values are not escaped, and older
-//! readers drop blanks, so no value here contains any.
+//! readers drop blanks, so no value here contains blanks.
 //!
 //! | file | variables |
 //! |---|---|

@@ -14,7 +14,7 @@ const SAMPLES_MAX: usize = 1_000_000;
 /// A game as time series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GameSeries {
-    /// The downsampling factor: every nth decision is included, and the last.
+    /// The downsampling factor: every nth decision is included, and so is the last.
     pub every: usize,
     /// Times of the samples, s.
     pub times_s: Vec<f64>,

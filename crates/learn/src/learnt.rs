@@ -6,8 +6,9 @@ pub struct Learnt {
     /// The policy's loss. For TD3, the negative mean value of its actions according to the critic,
     /// in scaled rewards.
     pub policy_loss: Option<f32>,
-    /// Half the mean squared error for PPO, in standard deviations of returns, and for TD3, in
-    /// scaled rewards. For double DQN, the mean Huber loss in scaled rewards.
+    /// The critic's loss: for PPO, half the mean squared error of values in standard deviations of
+    /// returns; for TD3, the same in scaled rewards; for double DQN, the mean Huber loss in scaled
+    /// rewards.
     pub value_loss: Option<f32>,
     /// Entropy of the policy, nats.
     pub entropy: Option<f32>,

@@ -20,7 +20,7 @@ pub enum Directive {
         /// Between 0 and 1.
         speed_factor: f64,
     },
-    /// The boat holds and its mind is ignored: it is out of action, or out of play for good.
+    /// The boat holds and its mind is ignored: it is out of action, or permanently out of play.
     Hold,
 }
 

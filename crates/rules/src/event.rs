@@ -115,7 +115,8 @@ pub enum Event {
 }
 
 impl Event {
-    /// The affected boat; the first one in a collision. `None` for events that affect all boats.
+    /// The boat that the event concerns; the first one in a collision. `None` for events that
+    /// concern all boats.
     pub fn vehicle(self) -> Option<VehicleId> {
         match self {
             Event::Grabbed { vehicle, .. }
@@ -174,9 +175,9 @@ pub struct EventRecord {
     pub at_ns: SimTime,
     /// The kind: a constant of `EventRecord.msg`.
     pub kind: u8,
-    /// The affected vehicle (the winning team, for `ENDED`), or -1.
+    /// The vehicle that the event concerns, or for `ENDED` the winning team; otherwise -1.
     pub subject: i32,
-    /// The flag, the tagger or the other vehicle, or -1.
+    /// The flag, the tagger or the other vehicle; otherwise -1.
     pub object: i32,
 }
 

@@ -3,7 +3,7 @@
 //! ```text
 //!        corner 1 ──────────────── corner 2        `along` runs from the first team's end to the
 //!           │  first  :  second  │                 second's; `across` is a quarter turn to port of it.
-//!   across ▲│    ⚑    :    ⚑     │                 Flags lie on the long middle line, `flag_inset_m`
+//!   across ▲│    ⚑    :    ⚑     │                 Default flags are midway across, `flag_inset_m`
 //!          ││  team   :   team   │                 from the ends; the scrimmage line halves the field.
 //!        corner 0 ──────────────── corner 3
 //!              along ▶
@@ -35,7 +35,7 @@ pub struct Plan<E = f64> {
     /// Extent from end to end, m.
     #[schemars(range(min = 10, max = 20000))]
     pub width_m: f64,
-    /// Size across the field, m.
+    /// Extent across the field, m.
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
     /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width /
@@ -234,9 +234,9 @@ pub struct Field {
     pub along: Ned,
     /// Unit vector a quarter turn to port of `along`.
     pub across: Ned,
-    /// Clockwise from corner 0.
+    /// The corners, clockwise from corner 0.
     pub corners: [Ned; 4],
-    /// The first two are the teams' default flags.
+    /// All flags; the first two are the teams' default flags.
     pub flags: Vec<Flag>,
     /// Each team's own side, by team.
     pub zones: Vec<Zone>,

@@ -122,7 +122,7 @@ pub struct Rules {
     /// Maximum speed outside the field, as a fraction of top speed.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub outside_speed_factor: f64,
-    /// A team's information about other boats. Default: everything, at once.
+    /// Limits on a team's information about other boats. Default: no limits.
     #[serde(default)]
     #[schemars(with = "Option<Sharing>", !default, extend("x-drawn" = true))]
     pub sharing: Sharing,
@@ -143,8 +143,8 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// Distance within which the rules make two boats relevant to each other, m: the reach of
-    /// `near` in [`Referee::advance`].
+    /// Distance within which two boats matter to each other under the rules, m: [`Look::near`] must
+    /// contain all such pairs.
     pub fn reach_m(&self) -> f64 {
         self.tag_radius_m.max(self.collision_distance_m)
     }

@@ -68,11 +68,11 @@ impl<'de> Deserialize<'de> for ActionSpace {
 pub(crate) enum Named {
     /// The actions of Pyquaticus: full or half speed in eight directions, and a stop.
     Pyquaticus,
-    /// Two numbers from -1 to 1: the turn in half turns clockwise, and the speed, from 0 to the
-    /// boat's maximum.
+    /// Two numbers from -1 to 1: the turn, in half turns clockwise, and the speed, from -1 (stop)
+    /// to 1 (the boat's maximum).
     Continuous,
-    /// The values of a strategy variable: they select what its rules and modes do, not how the boat
-    /// steers.
+    /// The values of a strategy variable, which affect the strategy's rules and modes instead of
+    /// steering the boat directly.
     Options,
 }
 

@@ -212,7 +212,7 @@ pub struct Hull<E = f64> {
     /// Cross-flow drag coefficient of the immersed side (Hoerner); 0: no cross-flow.
     #[schemars(range(min = 0, max = 3), extend("default" = 0))]
     pub crossflow_coefficient: f64,
-    /// Draught for cross-flow, m. Required with a coefficient. Default: 0.
+    /// Draught for cross-flow, m. Required if `crossflow_coefficient` is above 0. Default: 0.
     #[schemars(range(min = 0, max = 20))]
     pub crossflow_draught_m: E,
     /// Length for cross-flow, m. Default: L.

@@ -82,7 +82,7 @@ pub(super) const NAME_PATTERN: &str = "^[a-z0-9_]{1,40}$";
 /// [`NAME_PATTERN`] in plain language.
 pub(super) const NAME_EXPECTED: &str = "1 to 40 characters from a-z, 0-9 and _";
 
-/// Whether this is a valid name of a vehicle, team or rival.
+/// Whether this is a valid name of a file, vehicle, team, fault, variable or behaviour.
 pub(super) fn is_name(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     !name.is_empty() && name.len() <= 40 && name.chars().all(fits)

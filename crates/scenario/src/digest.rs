@@ -4,7 +4,8 @@ use super::Scenario;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The digest of a plan, in hex: of its parsed content, `meaning`, and of its games' files.
+/// The digest of a tournament or sweep, in hex. It covers the version of Squall, the parsed
+/// content, `meaning`, and the files of the games.
 pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
     let contents = files
         .iter()
@@ -15,8 +16,8 @@ pub fn digest_of(meaning: &str, files: &[(PathBuf, Arc<[u8]>)]) -> String {
 }
 
 impl Scenario {
-    /// The digest of the games for all seeds of this scenario with this version of Squall,
-    /// independent of file locations, in hex.
+    /// The digest, in hex, that identifies this scenario's games for all seeds with this version of
+    /// Squall. It does not depend on file locations.
     ///
     /// # Panics
     /// If the scenario cannot be serialised as JSON, as with map keys that are not strings.

@@ -1,8 +1,8 @@
 //! Randomised numbers: distributions in place of numbers in a file, drawn for every game.
 //!
 //! Reading a file replaces each distribution with a number, so that the rest of a scenario contains
-//! only numbers. Files with distributions are checked at both ends of each distribution, so that no
-//! game fails in the middle of a campaign.
+//! only numbers. Files with distributions are checked at both ends of each distribution, so that
+//! most faults are found before the first game.
 
 use super::loader::{Basis, Loader};
 use super::overrides::Overrides;
@@ -11,7 +11,7 @@ use primitives::stream::Stream;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Normal and log-normal numbers are redrawn until within this many standard deviations.
+/// Normal and log-normal numbers are redrawn until they are within this many standard deviations.
 const WITHIN_SIGMA: f64 = 3.0;
 
 /// A number drawn for a game.

@@ -24,7 +24,7 @@ pub fn strategy_path(entry: &str) -> Result<PathBuf, String> {
     let folder = std::path::absolute(folder).map_err(|error| error.to_string())?;
     if !folder.join("solution.py").is_file() {
         return Err(format!(
-            "there is no solution.py in {entry}, expected the folder of an entry"
+            "no solution.py in {entry}, expected the folder of a competition entry"
         ));
     }
     // Append it, because a folder's own name may contain a dot.

@@ -42,7 +42,7 @@ pub enum FaultKind {
 pub struct Fault {
     /// The kind of fault.
     pub kind: FaultKind,
-    /// Names of the affected boats, each with its own random times. Default: all.
+    /// Names of the affected boats; random times are drawn separately for each. Default: all.
     #[schemars(length(max = 10000))]
     pub boats: Vec<String>,
     /// Start, s.

@@ -146,8 +146,8 @@ impl Scenario {
         })
     }
 
-    /// Checks that all references are valid, all names are well-formed and all sizes are bounded.
-    /// Scenarios loaded from files satisfy this; those from other sources may not.
+    /// Checks that all references are valid, all names are well-formed and all sizes are within
+    /// limits. Scenarios loaded from files satisfy this; those from other sources may not.
     ///
     /// # Errors
     /// The first violation, as a string.
@@ -178,7 +178,8 @@ impl Scenario {
         self.check_sizes()
     }
 
-    /// Whether everything that an event refers to exists in the game: the sender may be wrong.
+    /// Whether everything that an event refers to exists in the game. An event from another process
+    /// may refer to something else.
     pub fn has(&self, event: Event) -> bool {
         let flag = event.flag();
         let team = match event {

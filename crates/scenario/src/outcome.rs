@@ -28,8 +28,8 @@ pub struct Outcome {
     /// Whether the game depends on the seed.
     #[serde(default)]
     pub random: bool,
-    /// Whether wind, waves or current favour one end of the field: if so, a single game does not
-    /// show which team is better.
+    /// Whether wind, waves or current may favour one end of the field. If so, a single game does
+    /// not show which team is better.
     #[serde(default)]
     pub ends_differ: bool,
     /// The winning team's name; `None` for a draw or an unfinished game.
@@ -62,7 +62,7 @@ pub struct EventOutcome {
     pub at_s: f64,
     /// The kind of event, for example `tagged`.
     pub event: String,
-    /// The affected boat.
+    /// The boat that the event concerns.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub vehicle: Option<String>,
     /// The tagger or the other boat.

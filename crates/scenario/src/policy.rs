@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Maximum size of a model file, bytes: every agent receives it with the scenario.
 pub const BYTES_MAX: u64 = 1 << 20;
-/// Allowed period of a policy, s.
+/// Allowed periods of a policy, s.
 pub const PERIODS_S: RangeInclusive<f64> = 0.01..=10.0;
 
 /// Metadata keys of a model, one for each field of [`PolicySpec`].
@@ -343,7 +343,10 @@ impl TryFrom<Sent> for PolicyModel {
             ));
         }
         if !PERIODS_S.contains(&period_s) {
-            return Err(format!("a period of {period_s} s, expected {PERIODS_S:?}"));
+            let (least_s, most_s) = (PERIODS_S.start(), PERIODS_S.end());
+            return Err(format!(
+                "a period of {period_s} s, expected {least_s} to {most_s} s"
+            ));
         }
         let said = PartialSpec {
             observation: Some(spec.observation),

@@ -168,7 +168,7 @@ fn names(page: &mut String) {
             let _ = writeln!(page, "| `{name}(place)`{two} | {meaning} |");
         }
     }
-    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of the following; if there are several, the nearest.\n");
+    page.push_str("\n## Places\n\nA place is `[x, y]`, a named point of the team such as `CFX`, or one of the following; if several match, the nearest is used.\n");
     page.push_str("\n| place | meaning |\n|---|---|\n");
     for mark in Mark::all() {
         let _ = writeln!(page, "| `{}` | {} |", mark.name(), line(mark.meaning()));
@@ -180,9 +180,9 @@ fn names(page: &mut String) {
 }
 
 fn behaviours(page: &mut String, root: &Value) {
-    // A full stop has the common keys of all kinds, and none of its own.
+    // `full_stop` has the common keys of all kinds, and no others.
     let common = &root["definitions"]["FullStop"];
-    page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind. Speeds are limited to the boat's top speed.\n");
+    page.push_str("\n## `[behaviour.NAME]`\n\nKeys of every kind of behaviour. Speeds are limited to the boat's top speed.\n");
     table(page, common, |_, _| true);
     let behaviour = &root["properties"]["behaviour"];
     for about in entries(&behaviour["additionalProperties"], "oneOf") {

@@ -4,7 +4,7 @@
 //! A key is a field of a type, and is declared only once, there:
 //!
 //! ```text
-//! /// Distance below which an intruder is tagged, m.
+//! /// Maximum distance for a tag, m.
 //! #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
 //! pub tag_radius_m: f64,
 //! ```

@@ -150,7 +150,7 @@ pub struct Current {
 /// A first-order Gauss-Markov process.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Wander {
-    /// Its direction: the unit vector of the mean current, or its bearing if there is no mean.
+    /// The unit vector along which the speed varies: that of the mean current.
     #[serde(default)]
     #[schemars(skip)]
     pub toward: Ned,
@@ -177,7 +177,7 @@ pub struct Tide {
     pub phase: f64,
 }
 
-/// A current that grows linearly across its direction: V(p) = `per_m` (p − origin) · `across`,
+/// A current that grows linearly across its direction: V(p) = `per_s` (p − origin) · `across`,
 /// along `toward`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shear {
@@ -185,7 +185,7 @@ pub struct Shear {
     pub toward: Ned,
     /// The unit vector along which it grows, a quarter turn to starboard of the flow.
     pub across: Ned,
-    /// Growth, 1/s.
+    /// Increase of the flow per metre across it, 1/s.
     pub per_s: f64,
     /// The point with zero current, m from the datum.
     pub origin: Ned,

@@ -46,7 +46,7 @@ fn complete(key: &str) -> Vec<String> {
         }
     }
     let mut found = vec![];
-    // A key of a strategy begins with its team, and the others are tables of the game.
+    // Keys of strategies begin with a team; `link` and `fault` are tables of the game.
     let is_kind = |(prefix, _): &&(&str, Kind)| !["link", "fault", "strategy"].contains(prefix);
     for (prefix, kind) in PREFIXES.iter().filter(is_kind) {
         collect(&mut found, declared(*kind), prefix, &format!(".{key}"));

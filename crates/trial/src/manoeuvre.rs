@@ -57,7 +57,7 @@ pub struct Plan {
     pub approach_s: f64,
     /// Initial turn: 1 to starboard, −1 to port.
     pub side: f64,
-    /// The heading at which a zigzag switches, rad.
+    /// The deviation from the course at which a zigzag switches, rad.
     pub switch_rad: f64,
     /// The difference between the thrusters in a zigzag, or its rudder angle, as a fraction of
     /// full.

@@ -113,8 +113,8 @@ fn turning_circle(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// The overshoot between two switches is how far the heading exceeds the angle. The period is the
-/// mean over whole swings after the first switch.
+/// The overshoot between two switches is how far the heading exceeds the switching angle. The
+/// period is the mean over whole swings after the first switch.
 fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let switches = &sailed.switches;
@@ -231,7 +231,7 @@ fn drift(sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// Rates and drift in the second half; the drift is that of each turn's mean position.
+/// Rates over the second half, and the drift of the mean position from one whole turn to the next.
 fn spin(sailed: &Sailed) -> Vec<Measure> {
     let turned = turned_rad(&sailed.samples);
     let middle = sailed.samples.len() / 2;
@@ -268,7 +268,7 @@ fn spin(sailed: &Sailed) -> Vec<Measure> {
     vec![
         measure("steady yaw rate", rate_rad_s.to_degrees(), "°/s"),
         measure(
-            "time to 63.2 % of it",
+            "time to 63.2 % of yaw rate",
             reached.map_or(f64::NAN, |sample| sample.t_s),
             "s",
         ),

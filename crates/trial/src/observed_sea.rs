@@ -83,11 +83,11 @@ pub struct ObservedSea {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoSea {
     /// The log contains no heights.
-    #[error("the log contains no heights of a satellite receiver")]
+    #[error("the log contains no heights from a satellite receiver")]
     Missing,
     /// There are too few heights, or they are too far apart.
     #[error(
-        "{count} heights, one every {step_s:.1} s; expected heights of a receiver at least once per second for \
+        "{count} heights, one every {step_s:.1} s; expected heights from a receiver at least once per second for \
          {least_s:.0} s"
     )]
     Heights {

@@ -93,7 +93,7 @@ fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
             places => {
                 let (here, gone) = if places[0].is_some() { (0, 1) } else { (1, 0) };
                 let message = format!(
-                    "column {} without {}",
+                    "found column {} without {}, expected both",
                     pair.columns()[here],
                     pair.columns()[gone]
                 );

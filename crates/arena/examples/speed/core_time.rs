@@ -3,7 +3,7 @@
 /// CPU time of this thread, s: other load on the machine is not counted.
 pub(crate) fn core_time_s() -> f64 {
     let path = "/proc/thread-self/schedstat";
-    // Linux updates the time when it schedules: without this, it may be 10 ms old.
+    // Linux updates this time only when it schedules: without the yield, it may be 10 ms old.
     std::thread::yield_now();
     let text = std::fs::read_to_string(path)
         .unwrap_or_else(|e| panic!("{path}: {e} (this program needs Linux)"));

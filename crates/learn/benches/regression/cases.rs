@@ -1,4 +1,4 @@
-//! What is measured.
+//! The measured cases.
 
 use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 use learn::environment::{Control, Player, Setup, VectorEnvironment};
@@ -68,7 +68,7 @@ fn game(name: &'static str, file: &str, until_s: f64) -> Case {
     }
 }
 
-/// The same with boats that hold, so that helms cost nothing.
+/// Like [`game`], but with boats that hold, so that helms cost nothing.
 fn physics(name: &'static str, file: &str, until_s: f64) -> Case {
     let (scenario, idle) = (scenario_of(file), strategy("idle"));
     let run = move || {

@@ -1,5 +1,5 @@
 //! The cost of whole games, environment steps and policy evaluations, as a multiple of a reference
-//! loop that is measured alternately with each case. The multiple hardly depends on the machine's
+//! loop that is measured alternately with each case. The multiple depends little on the machine's
 //! clock and load.
 //!
 //! `cargo bench -p squall-learn --bench regression` compares the multiples with those stored in
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Measurements of each case.
+/// Number of measurements of each case.
 const ROUNDS: usize = 15;
 /// CPU time of a measurement of a case, s: long enough to ignore the clock's resolution.
 const RUN_S: f64 = 0.03;

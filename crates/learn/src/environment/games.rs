@@ -184,7 +184,8 @@ impl Games {
     /// Restarts the threads in a child process, which inherits none, and removes the watches.
     pub fn continue_after_fork(&mut self) {
         self.starts.end_watches();
-        // Drop neither: dropping them would wait for threads of the parent process.
+        // Drop neither the watches nor the old pool: dropping them would wait for threads of the
+        // parent process.
         self.slots
             .iter_mut()
             .for_each(|slot| slot.game.forget_watch());
@@ -280,7 +281,8 @@ impl Games {
     }
 
     /// Plays one step of every game with one action per row. A game that ends restarts in the same
-    /// step if `restarts`; otherwise in the next step, whose action and reward do not count.
+    /// step if `restarts` is true; otherwise it restarts in the next step, whose action and reward
+    /// do not count.
     ///
     /// # Errors
     /// [`SetupError::NoStart`] if a new game cannot begin.

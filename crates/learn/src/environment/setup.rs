@@ -52,8 +52,8 @@ pub enum Player {
 pub struct Setup {
     /// The game; the seed chooses its random values.
     pub scenario: Scenario,
-    /// The minimum and maximum number of boats of a team, drawn for each team and game; the last
-    /// boats of the team are left out. `None`: all boats play.
+    /// The minimum and maximum number of boats in a team. A number is drawn for each team and game;
+    /// surplus boats, the team's last, are left out. `None`: all boats play.
     pub team_sizes: Option<[u32; 2]>,
     /// The policies' observation and action spaces.
     pub spaces: Spaces,
@@ -252,10 +252,10 @@ impl Setup {
         {
             let found = texts(other).unwrap_or_default().join(", ");
             let allowed = format!(
-                "the options of the first role: {}",
+                "those of the first role: {}",
                 self.options().unwrap_or_default().join(", ")
             );
-            return Err(wrong("`sets` of the second role", found, &allowed));
+            return Err(wrong("the options of a role", found, &allowed));
         }
         Ok(())
     }

@@ -27,7 +27,8 @@ impl DqnLearner {
     /// A new network of this shape.
     pub fn new(observation: usize, hidden: &[usize], actions: usize, seed: u64) -> DqnLearner {
         let sizes = [&[observation], hidden, &[actions]].concat();
-        // Hyperbolic tangents, unlike in the paper, because boats can evaluate only such networks.
+        // Hyperbolic tangents, unlike in the paper, because a `Perceptron` has no other activation
+        // function.
         let network = Perceptron::new(&sizes, 0.01, &mut Stream::new(seed, "actor"));
         let settings = AdamSettings {
             epsilon: 1e-8,

@@ -137,8 +137,8 @@ impl Td3Learner {
         }
     }
 
-    /// The target value of each step: its reward plus the smaller of the two target critics' values
-    /// for a noisy action of the target policy.
+    /// The target value of each step: its reward plus the discounted value of a noisy action of the
+    /// target policy, the smaller of the two target critics' estimates.
     fn targets(
         &self,
         minibatch: &Minibatch<Numbers>,

@@ -95,8 +95,8 @@ pub struct End {
 /// Harada and Russell, ICML 1999). It does not change the optimal policy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Potential {
-    /// At the enemies' flag; 0 a field's width away. For a carrier, it rises to twice this at the
-    /// capture place.
+    /// Potential at the enemies' flag; 0 a field's width away. For a carrier, it rises to twice
+    /// this at the capture place.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub attack: f64,
     /// For a tagged boat: minus this much per field width of distance from its untag place.
@@ -104,8 +104,8 @@ pub struct Potential {
     pub untag: f64,
 }
 
-/// Values of positions, 0 for a tagged boat: each step adds the change in value. With discount γ,
-/// staying earns (1 - γ) of the value per step. Unlike `potential`, these change the optimal
+/// Values of positions, 0 for a tagged boat: each step adds the change in value. In the discounted
+/// return, this equals (1 - γ) of the value per step. Unlike `potential`, these change the optimal
 /// policy: use them for policies with a single task.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Place {

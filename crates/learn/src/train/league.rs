@@ -6,7 +6,7 @@ use scenario::policy::{PartialSpec, PolicyModel};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// Draw weight of an opponent that never wins, relative to equal weights.
+/// Draw weight of an opponent that never wins, relative to that of one that always wins.
 const LEAST: f64 = 0.1;
 /// Factor on a game's weight for each later game.
 const MEMORY: f64 = 0.98;

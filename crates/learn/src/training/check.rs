@@ -50,7 +50,7 @@ pub(super) fn training(document: &Document<Training>) -> Option<Training> {
             && (times < 1.0 || (times * decision_s - training.period_s).abs() > 1e-9)
         {
             let message = format!(
-                "period_s is {}, expected a multiple of {decision_s}, which is decision_s of {}",
+                "period_s is {}, expected a multiple of decision_s of {}, which is {decision_s}",
                 training.period_s, scenario.name
             );
             document.note("period_s", message);

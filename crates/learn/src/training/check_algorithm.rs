@@ -45,7 +45,7 @@ pub(super) fn check(document: &Document<Training>) {
         && warm_up > buffer
         && document.is_sound(name)
     {
-        let message = format!("warm_up is {warm_up}, expected at most {buffer}, which is buffer");
+        let message = format!("warm_up is {warm_up}, expected at most buffer, which is {buffer}");
         document.note(&format!("{name}.warm_up"), message);
     }
 }

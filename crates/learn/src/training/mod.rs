@@ -97,7 +97,7 @@ pub struct League {
     /// Samples between kept policies.
     #[schemars(range(min = 1000, max = 1_000_000_000), extend("default" = 500_000))]
     pub every_samples: u64,
-    /// Number of newest policies kept.
+    /// Maximum number of policies kept; the newest remain.
     #[schemars(range(min = 1, max = 1000), extend("default" = 20))]
     pub most: usize,
     /// Opponents are drawn in proportion to this power of their fraction of wins; 0: uniformly

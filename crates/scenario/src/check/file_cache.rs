@@ -49,7 +49,7 @@ impl<F: ScenarioFile> FileCache<F> {
         Some(index)
     }
 
-    /// The same without the check for unique names: a strategy may have two versions.
+    /// Like `index`, but without the check for unique names: a strategy may have two versions.
     pub(super) fn index_at(
         &mut self,
         game: &Document<raw::Game>,

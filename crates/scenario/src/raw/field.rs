@@ -22,7 +22,7 @@ pub struct Field {
 pub(crate) struct Obstacle {
     /// A circle.
     pub(crate) circle: Option<Circle>,
-    /// Corners [x, y] in order, in either direction; sides must not cross.
+    /// Corners [x, y] in m, in order, in either direction; sides must not cross.
     #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1000000, max = 1000000))))]
     pub(crate) polygon: Option<Vec<[f64; 2]>>,
 }

@@ -26,10 +26,10 @@ pub struct Game {
     /// Faults during the game, by name.
     #[schemars(extend("default" = {}))]
     pub(crate) fault: BTreeMap<String, Fault>,
-    /// Random seed; each gives a different game.
+    /// Random seed; each value gives a different game.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub(crate) seed: u64,
-    /// Later seeds, in chronological order.
+    /// Changes of the seed during the game, in chronological order.
     #[schemars(length(max = 1000), extend("default" = []))]
     pub(crate) reseed: Vec<Reseed>,
     /// Duration of the game, s. Default: `time_limit_s` of the rules.

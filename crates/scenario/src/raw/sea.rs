@@ -23,7 +23,7 @@ pub struct Sea {
     pub(crate) current: Current,
 }
 
-/// A spectrum given by height and period, or by the wind that raised it.
+/// Waves given by height and period, or by the wind that raised them.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Waves {
     /// Shape of the spectrum.

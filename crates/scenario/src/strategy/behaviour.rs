@@ -18,8 +18,8 @@ pub struct Behaviour {
     /// Runs only while this condition holds. Default: always.
     #[schemars(with = "Option<String>")]
     pub when: Option<Expression>,
-    /// Weight, at most that of the modes' op_region and avoid_collision. Safety behaviours default
-    /// to 300.
+    /// Weight, at most that of `op_region` and `avoid_collision` in the same modes. The default of
+    /// safety behaviours is 300.
     #[schemars(range(min = 0, max = 1000), extend("default" = 100))]
     pub weight: Parameter,
     /// Running time after which it completes, s. Default: never.

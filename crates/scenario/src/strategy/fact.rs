@@ -119,7 +119,7 @@ impl Fact {
         is_own || matches!(self, FlagTaken | EnemyFlagTaken | MateHasFlag | EnemyInZone)
     }
 
-    /// Whether it is a count.
+    /// Whether it is an integer.
     pub fn is_whole(self) -> bool {
         !self.is_truth()
             && !matches!(
@@ -138,7 +138,7 @@ impl Measure {
         )
     }
 
-    /// Whether it is a count.
+    /// Whether it is an integer.
     pub fn is_whole(self) -> bool {
         self == Measure::MatesNearer
     }

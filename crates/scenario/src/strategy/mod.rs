@@ -93,7 +93,7 @@ pub struct Helm {
     #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: Option<f64>,
     /// Bonus for decisions near the last one (30 degrees, 0.75 m/s), as a fraction of all weights
-    /// except those of `op_region`; a larger bonus would outweigh safety.
+    /// except those of `op_region`. More than 0.1 would outweigh safety.
     #[schemars(range(min = 0, max = 0.1), extend("default" = 0))]
     pub hysteresis: f64,
     /// Whether to correct for estimated drift and heading error, so that course and speed over the
@@ -142,13 +142,13 @@ pub struct Rule {
 /// The event that triggers a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Trigger {
-    /// The affected boat.
+    /// The boat that the event concerns.
     pub who: Who,
     /// The kind of event.
     pub what: What,
 }
 
-/// The boat that an event affects.
+/// The boat that an event concerns.
 #[derive(VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

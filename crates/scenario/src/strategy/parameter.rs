@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// A number of a behaviour, which may be an expression. The helm evaluates it at every decision.
-/// Angles are compass degrees, as in files.
+/// Angles are in degrees, as in files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Its value.

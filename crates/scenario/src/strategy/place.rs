@@ -82,7 +82,7 @@ impl Place {
         fixed.chain(Field::point_names()).collect()
     }
 
-    /// The names, abbreviated.
+    /// The names for messages, with an example in place of the list of named points.
     pub fn names_in_short() -> String {
         let marks = Mark::names().join(", ");
         let boats = Boat::names().join(", ");

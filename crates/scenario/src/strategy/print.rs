@@ -117,7 +117,7 @@ impl Program {
             },
             _ => Kind::Number,
         };
-        // Chains of these are associative; other chains group from the left.
+        // `&&` and `||` are associative; all other operators group from the left.
         let (at_left, at_right) = match join {
             Join::And | Join::Or => (binds, binds),
             _ if binds == Precedence::Relation => (Precedence::Sum, Precedence::Sum),

@@ -65,10 +65,10 @@ pub struct Waypoint {
     /// Speed, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 5))]
     pub speed_m_s: Parameter,
-    /// Distance at which a point is reached, m.
+    /// Distance within which a point counts as reached, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 3))]
     pub capture_radius_m: Parameter,
-    /// Distance at which passing a point also reaches it, m.
+    /// Distance within which a point counts as reached once the boat passes it, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub slip_radius_m: Parameter,
     /// How far ahead on the leg to steer, m; 0: steer for the next point.
@@ -91,10 +91,10 @@ pub struct Loiter {
     /// Speed, m/s.
     #[schemars(range(min = 0, max = 60), extend("default" = 5))]
     pub speed_m_s: Parameter,
-    /// Distance at which a corner is reached, m.
+    /// Distance within which a corner counts as reached, m.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 3))]
     pub capture_radius_m: Parameter,
-    /// Distance at which passing a corner also reaches it, m.
+    /// Distance within which a corner counts as reached once the boat passes it, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub slip_radius_m: Parameter,
     /// Distance from the polygon beyond which the boat first approaches it, m.
@@ -118,7 +118,7 @@ struct ShapeKeys {
     /// Corners, in order. Required without `ellipse`.
     #[schemars(length(min = 3, max = 1000), extend("x-expected" = "3 to 1000 places"))]
     polygon: Option<Vec<Place>>,
-    /// Instead of `polygon`.
+    /// An ellipse instead of `polygon`.
     ellipse: Option<Ellipse>,
 }
 
@@ -130,7 +130,7 @@ pub enum Turn {
     Clockwise,
     /// Counterclockwise.
     Counterclockwise,
-    /// Depends on the heading on arrival.
+    /// Whichever suits the heading on arrival.
     Best,
 }
 
@@ -174,10 +174,10 @@ pub struct StationKeep {
 pub struct CutRange {
     /// Target.
     pub contact: Boat,
-    /// From 0 (only rate of closure) to 100 (only CPA).
+    /// Weighting, from 0 (only rate of closure) to 100 (only CPA).
     #[schemars(range(min = 0, max = 100), extend("default" = 50))]
     pub patience: Parameter,
-    /// Time horizon of a course, s.
+    /// Time horizon for evaluating courses, s.
     #[schemars(range(min = 0.1, max = 600), extend("default" = 15))]
     pub time_on_leg_s: Parameter,
     /// Distance at which it gives up, m; 0: never.
@@ -190,13 +190,13 @@ pub struct CutRange {
 pub struct Trail {
     /// Target.
     pub contact: Boat,
-    /// Distance from the target, m.
+    /// Distance of that position from the target, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 50))]
     pub range_m: Parameter,
-    /// Direction from the target's bow, degrees clockwise; 180 is astern.
+    /// Direction of that position from the target, degrees clockwise from its bow; 180 is astern.
     #[schemars(range(min = -360, max = 360), extend("default" = 180))]
     pub angle_deg: Parameter,
-    /// Distance from the position within which it matches the target's course and speed, m.
+    /// Distance from that position within which the boat matches the target's course and speed, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 5))]
     pub radius_m: Parameter,
     /// Maximum speed, m/s.
@@ -228,7 +228,7 @@ pub struct Shield {
     /// Distance from the guarded place towards the enemy, at most half-way, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 10))]
     pub distance_m: Parameter,
-    /// Distance from its station within which it matches the speed of the guarded place, m.
+    /// Distance from its station within which the boat matches the speed of the guarded place, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 3))]
     pub radius_m: Parameter,
     /// Maximum speed, m/s.
@@ -271,7 +271,7 @@ pub struct AvoidCollision {
     /// CPA with full utility, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 6))]
     pub cpa_max_m: Parameter,
-    /// Time horizon of a course, s.
+    /// Time horizon for evaluating courses, s.
     #[schemars(range(min = 0.1, max = 600), extend("default" = 20))]
     pub time_on_leg_s: Parameter,
     /// How the weight falls between the two distances.
@@ -280,7 +280,7 @@ pub struct AvoidCollision {
     /// Distance to another boat at which the boat stops, m. Default: never.
     #[schemars(range(min = 0.1, max = 1000))]
     pub halt_m: Option<Parameter>,
-    /// Distance to all boats beyond which it resumes, m. Default: 3 × `halt_m`.
+    /// Distance to every other boat beyond which the boat resumes, m. Default: 3 × `halt_m`.
     #[schemars(range(min = 0, max = 1000))]
     pub release_m: Option<Parameter>,
     /// Time after which the boat resumes anyway, s; it stops again only once it has been clear of
@@ -314,7 +314,7 @@ pub enum Contacts {
 pub enum Grade {
     /// Linearly.
     Linear,
-    /// With power 1.5.
+    /// With exponent 1.5.
     Quasi,
     /// Quadratically.
     Quadratic,
@@ -336,12 +336,12 @@ pub struct AvoidObstacle {
     /// Passing distance with full utility, m.
     #[schemars(range(min = 0, max = 10_000), extend("default" = 4))]
     pub cpa_max_m: Parameter,
-    /// Time horizon of a course, s.
+    /// Time horizon for evaluating courses, s.
     #[schemars(range(min = 0.1, max = 600), extend("default" = 20))]
     pub time_on_leg_s: Parameter,
 }
 
-/// Keeps the boat on the field, and brings it back slowly.
+/// Keeps the boat on the field, and brings it back slowly if it leaves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("x-weight" = 300))]
 pub struct OpRegion {
@@ -351,7 +351,7 @@ pub struct OpRegion {
     /// Distance inside the edge within which the boat turns away from courses that lead out, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 6))]
     pub save_m: Parameter,
-    /// Distance outside beyond which `beyond_halt` applies, m.
+    /// Distance outside the region beyond which `beyond_halt` applies, m.
     #[schemars(range(min = 0, max = 100_000), extend("default" = 30))]
     pub halt_m: Parameter,
     /// Action beyond `halt_m`.
@@ -371,7 +371,7 @@ pub struct OpRegion {
     pub lookahead_s: Parameter,
 }
 
-/// The action of a boat too far outside.
+/// What a boat does beyond `halt_m`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BeyondHalt {

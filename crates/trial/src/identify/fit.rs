@@ -116,7 +116,7 @@ pub enum NoFit {
     #[error("{0} is not a parameter, expected one or more of {list}", list = names().join(", "))]
     Unknown(String),
     /// The boat has no such parameter.
-    #[error("the boat has no {0}")]
+    #[error("the boat has no parameter {0}")]
     NotThere(&'static str),
     /// There are no parameters to fit.
     #[error("no parameters to fit")]
@@ -129,7 +129,7 @@ pub enum NoFit {
     Search(String),
     /// Several winds explain the log.
     #[error(
-        "the log does not determine the wind: {0} explain it equally well; give the wind to --sea"
+        "the log does not determine the wind: {0} explain the log equally well; pass a sea file with the wind to --sea"
     )]
     Ambiguous(String),
     /// The log does not determine some parameters.

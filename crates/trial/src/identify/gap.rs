@@ -11,7 +11,7 @@ use super::rollout::{Point, Setting, View, rollout};
 use primitives::math;
 use scenario::boat::Boat;
 
-/// Turn that is timed, degrees.
+/// The turn whose duration is compared, degrees.
 pub const TURN_DEG: f64 = 45.0;
 /// Time after a restart that is not compared, s: receivers still report the position from before
 /// it.

@@ -78,7 +78,7 @@ impl Log {
         if columns[0].is_some() != columns[1].is_some() {
             return Err(sheet.mistake(
                 Some(1),
-                "one of the columns x_m and y_m, expected both or none".to_owned(),
+                "only one of the columns x_m and y_m, expected both or neither".to_owned(),
             ));
         }
         if times_s.len() < ROWS_MIN {

@@ -19,13 +19,13 @@ pub fn check_thrust_map<T>(document: &Document<T>, path: &str, points: &[(f64, f
     for (i, [last, (thrust_pct, speed_m_s)]) in points.array_windows().enumerate() {
         if *thrust_pct <= last.0 || *speed_m_s < last.1 {
             let message = format!(
-                "thrust_map has [{thrust_pct}, {speed_m_s}] here; both numbers must exceed those of the previous row"
+                "thrust_map has [{thrust_pct}, {speed_m_s}] here, expected thrust above and speed not below the previous row"
             );
             document.note(&format!("{path}.{}", i + 1), message);
         }
     }
     if points.len() < 2 || !points.contains(&(0.0, 0.0)) {
-        let message = "thrust_map lacks [0, 0] or a second pair, expected both";
+        let message = "thrust_map lacks [0, 0] or a second row, expected both";
         document.note(path, message);
     }
 }

@@ -64,7 +64,7 @@ fn drive(document: &Document<raw::Boat>) -> Option<Drive> {
     let raw = &document.raw;
     if let Some(kinematic) = &raw.kinematic {
         if document.has("thruster") || document.has("autopilot") {
-            let message = "kinematic is given with thruster or autopilot, expected only one";
+            let message = "kinematic is given with thruster or autopilot, expected kinematic alone";
             document.note("kinematic", message);
         }
         check_kinematic(document, kinematic);

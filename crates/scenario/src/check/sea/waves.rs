@@ -5,7 +5,8 @@ use crate::read::Document;
 use crate::sea::{GRAVITY_M_S2, PROFILE_EXPONENT, Spreading, Waves};
 use primitives::math;
 
-/// Maximum steepness (height over length at the peak); steeper waves break.
+/// Maximum steepness, the significant height divided by the wavelength at the peak; steeper waves
+/// break.
 const STEEPEST: f64 = 0.08;
 /// Maximum height as a fraction of the depth; higher waves break.
 const HIGHEST: f64 = 0.6;

@@ -21,7 +21,7 @@ use serde_json::{Map, Value as Json, json};
 /// Maximum number of behaviours of a program.
 const MOST: usize = 1000;
 
-/// Pairs of numbers in ascending order.
+/// Pairs of keys; the first value must not exceed the second.
 const IN_ORDER: [(&str, &str); 3] = [
     ("inner_m", "outer_m"),
     ("cpa_min_m", "cpa_max_m"),

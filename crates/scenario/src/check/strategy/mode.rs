@@ -89,7 +89,7 @@ fn check_conditions(scope: &Scope<'_>, modes: &[Mode]) {
                 scope.note_missing(&path, &expected);
             }
             (Some(_), None) => {
-                let part_of = |parent: usize| format!("part of {}", modes[parent].name);
+                let part_of = |parent: usize| format!("child of {}", modes[parent].name);
                 let of = mode.parent.map_or_else(|| "mode".to_owned(), part_of);
                 let message = format!(
                     "`when` is not allowed in {name}, the last {of}, which is the fallback"
