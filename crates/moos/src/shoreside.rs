@@ -147,6 +147,7 @@ impl Shoreside<'_> {
         game::publish(
             community,
             scenario,
+            frame.stamp.valid_ns,
             (&frame.flags, &frame.score, &tagged),
             &mut |msg| sent.push(msg),
         );
@@ -161,7 +162,7 @@ impl Shoreside<'_> {
             let marker = game::marker(
                 scenario,
                 i,
-                carrier.map_or(flag.home, |boat| astern(&boat.nav)),
+                carrier.map_or(flag.home(frame.stamp.valid_ns), |boat| astern(&boat.nav)),
             );
             let key = format!("VIEW_MARKER {i}");
             // One variable contains the drawings of all flags; each flag is checked for changes

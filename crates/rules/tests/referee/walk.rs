@@ -283,7 +283,7 @@ fn assert_lawful(
                     && (!boat.tagged || in_turn)
             );
             assert!(field.contains(at(vehicle)));
-            assert!(at(vehicle).distance(field.flags[flag.index()].home) < rules.grab_radius_m);
+            assert!(at(vehicle).distance(field.flags[flag.index()].start) < rules.grab_radius_m);
             assert!(carrier(flag).is_none() || in_turn);
         }
         Event::Captured { vehicle, flag } => {
