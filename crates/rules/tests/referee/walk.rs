@@ -273,6 +273,10 @@ fn assert_lawful(
             vehicle,
             cause: TagCause::Boundary,
         } => assert!(!field.contains(at(vehicle))),
+        Event::Tagged {
+            cause: TagCause::Obstacle,
+            ..
+        } => unreachable!("the field has no obstacles"),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
             // Under sequential rules a boat may be tagged after its grab, and a flag grabbed just
