@@ -62,7 +62,9 @@ impl GameArgs {
     }
 
     pub(crate) fn load_from(&self, files: &Arc<Files>) -> Result<Scenario> {
+        // The seed may also decide which boats there are.
         scenario::load_with_files(&self.scenario, &self.overrides()?, files)
+            .and_then(|game| game.of_seed(self.seed(&game)))
             .with_context(|| format!("cannot play {}", self.scenario.display()))
     }
 

@@ -70,7 +70,8 @@ class World:
     """The game as one boat knows it, in the terms of Pyquaticus: x to the right, y up, blue on the left."""
 
     def __init__(self, game: Mapping[str, Any], request: Mapping[str, Any]) -> None:
-        self.game = game
+        # Flags that move are in every request.
+        self.game = {**game, **{key: request[key] for key in ("flags_m",) if key in request}}
         self.width_m, self.depth_m = game["field_m"]
         self.diagonal_m = math.hypot(self.width_m, self.depth_m)
         self.me = int(request["boat"]) + (game["boats"][0] if game["team"] == 1 else 0)

@@ -11,6 +11,7 @@ use messages::helm::HelmReport;
 use messages::{Order, Picture, Word};
 use primitives::angle::wrap_pi;
 use primitives::{SimTime, TeamId, VehicleId};
+use rules::Field;
 use scenario::Scenario;
 use scenario::action::{Action, ActionSpace, SetPoint};
 use scenario::observation::ObservationSpace;
@@ -240,12 +241,7 @@ fn game_of(scenario: &Scenario, team: TeamId, host: &Host) -> Value {
     let teams = [TeamId(0), TeamId(1)];
     let all = || (0..scenario.vehicles.len()).map(VehicleId::at);
     let count = |team| all().filter(|v| scenario.team_of(*v) == team).count();
-    let flag_of = |team| {
-        let mut flags = field.flags.iter();
-        let flag = flags.find(|flag| flag.team == team);
-        flag.map(|flag| <[f64; 2]>::from(field.along_across(flag.home)))
-    };
-    let (boats, flags_m) = (teams.map(count), teams.map(flag_of));
+    let (boats, flags_m) = (teams.map(count), flags_m(field, SimTime::ZERO));
     let is_of_2026 = |space| space == ObservationSpace::Pyquaticus2026;
     let has_power_play = scenario.rules.power_play != SimTime::ZERO;
     let has_disabled = host.observation.map_or(has_power_play, is_of_2026);
@@ -260,6 +256,14 @@ fn game_of(scenario: &Scenario, team: TeamId, host: &Host) -> Value {
         "cooldown_s": scenario.rules.tag_cooldown.as_s(),
         "score_max": crate::situation::score_max(scenario),
         "has_disabled": has_disabled,
+    })
+}
+
+/// The home of each team's first flag, along and across the field, m.
+fn flags_m(field: &Field, now: SimTime) -> [Option<[f64; 2]>; 2] {
+    [TeamId(0), TeamId(1)].map(|team| {
+        let flag = field.own_flags(team).next();
+        flag.map(|(_, flag)| field.along_across(flag.home(now)).into())
     })
 }
 
@@ -316,12 +320,16 @@ impl HostMind {
         let numbered = |index: usize| {
             ActionSpace::Pyquaticus.set_point(Action::Discrete(index), psi_rad, top_m_s)
         };
-        let request = json!({
+        let mut request = json!({
             "boat": situation.model.rank,
             "at_m": at_m,
             "heading_deg": heading_rad.to_degrees(),
             "observation": observation,
         });
+        let mut flags = field.flags.iter();
+        if flags.any(|flag| flag.settings.route.is_some()) {
+            request["flags_m"] = json!(flags_m(field, situation.now));
+        }
         let set_point = match locked(&self.entry).ask(request) {
             Ok(Chosen::Index(index)) => numbered(index),
             Ok(Chosen::Turn([speed_m_s, turn_deg])) => SetPoint {

@@ -37,7 +37,7 @@ pub(crate) fn dict<'py>(
         })
         .collect();
     let flags = field.flags.iter().zip(&frame.flags).map(|(flag, view)| {
-        let (along_m, across_m) = field.along_across(flag.home);
+        let (along_m, across_m) = field.along_across(flag.home(contest.now()));
         vec![
             along_m,
             across_m,

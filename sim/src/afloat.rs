@@ -55,6 +55,7 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
 fn without_consequences(rules: &Rules) -> Rules {
     Rules {
         boundary_tags: false,
+        obstacle_tag_m: 0.0,
         tagged_boat: TaggedBoat::DrivesItself,
         tagged_speed_factor: 1.0,
         outside_speed_factor: 1.0,

@@ -267,7 +267,7 @@ fn a_boat_with_bad_numbers_is_removed_and_the_others_continue() {
     let victim = VehicleId(1);
     let flag = primitives::FlagId(1);
     let pose = Pose {
-        at: scenario.field.flags[1].home,
+        at: scenario.field.flags[1].start,
         psi_rad: 0.0,
     };
     scenario.vehicles[1].start_position = StartPosition::At(pose);

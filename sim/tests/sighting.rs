@@ -334,7 +334,7 @@ fn the_referee_announces_a_carrier_that_nobody_sees() {
         (400.0, 100.0, 0.0),
         (0.0, 0.0, 0.0),
     );
-    let flag = scenario.field.flags[0].home;
+    let flag = scenario.field.flags[0].start;
     scenario.vehicles[RED.index()].start_position = StartPosition::At(Pose {
         at: flag,
         psi_rad: 0.0,

@@ -129,7 +129,7 @@ fn published_fields_come_out_where_they_were_sailed() {
         let published_m = 0.05;
         let pairs = flags
             .iter()
-            .zip(field.flags.iter().map(|flag| flag.home))
+            .zip(field.flags.iter().map(|flag| flag.start))
             .chain(corners.iter().zip(field.corners));
         for ((x, y), got) in pairs {
             let apart_m = got.distance(Ned::from_xy(*x, *y));

@@ -177,7 +177,7 @@ fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
             .tag_wait_share(other.tag_ready, situation.now),
     );
     out.push((other.age_s / AGE_S).min(1.0));
-    let home = situation.model.own_flag_near(other.at);
+    let home = situation.model.own_flag_near(other.at, situation.now);
     out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
 }
 

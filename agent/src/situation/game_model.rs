@@ -1,6 +1,6 @@
 //! The game as seen by one boat: everything that is constant during a game.
 
-use primitives::{FlagId, Ned, TeamId, VehicleId};
+use primitives::{FlagId, Ned, SimTime, TeamId, VehicleId};
 use rules::{Field, Rules};
 use scenario::Scenario;
 use scenario::strategy::Program;
@@ -36,9 +36,9 @@ pub(crate) struct GameModel {
     /// The other boats of the team, in the scenario's order.
     pub(crate) mates: Vec<VehicleId>,
     /// The flags to attack.
-    pub(crate) targets: Vec<(FlagId, Ned)>,
+    pub(crate) targets: Vec<FlagId>,
     /// The flags to defend.
-    pub(crate) own_flags: Vec<(FlagId, Ned)>,
+    pub(crate) own_flags: Vec<FlagId>,
     /// The score that ends the game, or Pyquaticus's default.
     pub(crate) score_max: f64,
     /// The maximum speed of the helm's decisions, m/s.
@@ -69,9 +69,7 @@ impl GameModel {
                 .iter()
                 .enumerate()
                 .filter(move |(_, flag)| (flag.team == team) == wanted);
-            flags
-                .map(|(i, flag)| (FlagId(i as u8), flag.home))
-                .collect::<Vec<_>>()
+            flags.map(|(i, _)| FlagId(i as u8)).collect::<Vec<_>>()
         };
         let mut points: Vec<(String, Ned)> = Field::point_names()
             .into_iter()
@@ -115,31 +113,32 @@ impl GameModel {
     }
 
     /// The place to which a flag must be brought from `at`.
-    pub(crate) fn capture_place(&self, at: Ned) -> Ned {
+    pub(crate) fn capture_place(&self, at: Ned, now: SimTime) -> Ned {
         self.rules
-            .capture_place(&self.field, self.team, at)
+            .capture_place(&self.field, self.team, at, now)
             .expect(HAS_ALL)
     }
 
     /// The place to which a tagged boat must be steered from `at`.
-    pub(crate) fn untag_place(&self, at: Ned) -> Ned {
+    pub(crate) fn untag_place(&self, at: Ned, now: SimTime) -> Ned {
         self.rules
-            .untag_place(&self.field, self.team, at)
+            .untag_place(&self.field, self.team, at, now)
             .expect(HAS_ALL)
     }
 
-    /// The centre of the untag circle for a boat at `at`.
-    pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
+    /// The untagging circle for a boat at `at`: centre and radius in m.
+    pub(crate) fn untag_circle(&self, at: Ned, now: SimTime) -> (Ned, f64) {
         self.rules
-            .untag_centre(&self.field, self.team, at)
+            .untag_circle(&self.field, self.team, at, now)
             .expect(HAS_ALL)
     }
 }
 
 impl TeamModel {
     /// The home of the team's flag nearest to a place.
-    pub(crate) fn own_flag_near(&self, at: Ned) -> Ned {
-        self.field.nearest_own_flag(self.team, at).expect(HAS_ALL)
+    pub(crate) fn own_flag_near(&self, at: Ned, now: SimTime) -> Ned {
+        let flag = self.field.nearest_own_flag(self.team, at, now);
+        flag.expect(HAS_ALL).1
     }
 
     /// Whether `at` is on the team's own side.

@@ -212,8 +212,8 @@ impl Situation {
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
         // Use hysteresis: with a single limit, position noise would toggle the state.
-        let from_home =
-            self.at.distance(self.model.untag_centre(self.at)) / self.model.rules.untag_radius_m;
+        let (centre, radius_m) = self.model.untag_circle(self.at, now);
+        let from_home = self.at.distance(centre) / radius_m;
         self.leaving = own.tagged
             && self.model.rules.untag_on != UntagOn::Never
             && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
@@ -314,7 +314,8 @@ impl Situation {
 
     /// The squared distance of a place from the team's nearest flag, m².
     fn flag_distance_squared(&self, at: Ned) -> f64 {
-        self.model.own_flag_near(at).distance_squared(at)
+        let home = self.model.own_flag_near(at, self.now);
+        home.distance_squared(at)
     }
 
     /// The untagged teammates without a flag.
@@ -344,18 +345,20 @@ impl Situation {
 
     fn mark(&self, mark: Mark) -> Ned {
         match mark {
-            Mark::OwnFlag => self.model.own_flag_near(self.at),
+            Mark::OwnFlag => self.model.own_flag_near(self.at, self.now),
             Mark::EnemyFlag => self.enemy_flag(),
-            Mark::CapturePlace => self.model.capture_place(self.at),
+            Mark::CapturePlace => self.model.capture_place(self.at, self.now),
             Mark::UntagPlace if self.leaving => self.enemy_flag(),
-            Mark::UntagPlace => self.model.untag_place(self.at),
+            Mark::UntagPlace => self.model.untag_place(self.at, self.now),
         }
     }
 
     /// The nearest flag to attack that is at home, or else the nearest of all.
     fn enemy_flag(&self) -> Ned {
+        let home = |flag: &FlagId| self.model.field.flags[flag.index()].home(self.now);
         let targets = self.model.targets.iter();
-        let key = |(flag, home): &&(FlagId, Ned)| {
+        let targets = targets.map(|flag| (*flag, home(flag)));
+        let key = |(flag, home): &(FlagId, Ned)| {
             (
                 self.carried(*flag).is_some(),
                 self.at.distance_squared(*home),
@@ -366,11 +369,11 @@ impl Situation {
             let b = key(b);
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
-        best.map_or(self.at, |(_, home)| *home)
+        best.map_or(self.at, |(_, home)| home)
     }
 
     fn is_own_flag(&self, flag: FlagId) -> bool {
-        self.model.own_flags.iter().any(|(own, _)| *own == flag)
+        self.model.own_flags.contains(&flag)
     }
 
     /// The carrier of a flag.
@@ -394,20 +397,20 @@ impl Values for Situation {
                 self.model
                     .own_flags
                     .iter()
-                    .any(|(flag, _)| self.carried(*flag).is_some()),
+                    .any(|flag| self.carried(*flag).is_some()),
             ),
             Fact::EnemyFlagTaken => truth(
                 self.model
                     .targets
                     .iter()
-                    .any(|(flag, _)| self.carried(*flag).is_some()),
+                    .any(|flag| self.carried(*flag).is_some()),
             ),
             Fact::MateHasFlag => {
                 let by_mate = |flag: FlagId| {
                     self.carried(flag)
                         .is_some_and(|carrier| carrier != self.model.me)
                 };
-                truth(self.model.targets.iter().any(|(flag, _)| by_mate(*flag)))
+                truth(self.model.targets.iter().any(|flag| by_mate(*flag)))
             }
             Fact::EnemyInZone => truth(self.intruders().next().is_some()),
             Fact::EnemiesInZone => count(self.intruders().count()),

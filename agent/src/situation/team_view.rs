@@ -319,7 +319,7 @@ impl TeamView {
                     at: boat.at,
                     velocity: boat.velocity(),
                 };
-                let flag = self.model.own_flag_near(boat.at);
+                let flag = self.model.own_flag_near(boat.at, self.now);
                 (flag.distance_squared(boat.at), intruder)
             })
             .collect();

@@ -5,7 +5,8 @@ use crate::scene::{helm, loaded, unsafely};
 use agent::Mind;
 use messages::picture::{FlagView, Nav, OwnBoat, Picture};
 use primitives::frame::Leg;
-use primitives::{Ned, TeamId, VehicleId};
+use primitives::{Ned, SimTime, TeamId, VehicleId};
+use rules::field::Route;
 use scenario::Scenario;
 
 const BLUE: TeamId = TeamId(0);
@@ -51,7 +52,7 @@ fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
         assert_eq!(field.own_flags(BLUE).count(), flags, "{game}");
         for (along, across) in [(0.1, 0.05), (0.3, 0.2), (0.4, 0.5), (0.6, 0.8), (0.9, 0.95)] {
             let at = field.at(along * field.plan.width_m, across * field.plan.depth_m);
-            let homes = field.own_flags(BLUE).map(|(_, home)| home);
+            let homes = field.own_flags(BLUE).map(|(_, flag)| flag.start);
             let home = homes
                 .min_by(|a, b| at.distance(*a).total_cmp(&at.distance(*b)))
                 .expect("blue has a flag");
@@ -62,11 +63,15 @@ fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
                     Leg {
                         from: home,
                         to: home
-                    }
+                    },
+                    SimTime::ZERO
                 ),
                 "{game}"
             );
-            assert!(rules.is_untag_place(field, BLUE, home), "{game}");
+            assert!(
+                rules.is_untag_place(field, BLUE, home, SimTime::ZERO),
+                "{game}"
+            );
             let mut helm = helm(&scenario);
             helm.decide(&alone(&scenario, at));
             for variable in helm.report().expect("a helm has a report").variables {
@@ -78,6 +83,31 @@ fn a_boat_makes_for_the_nearest_place_that_the_referee_takes() {
                     variable.name
                 );
             }
+        }
+    }
+}
+
+#[test]
+fn a_boat_makes_for_the_current_homes_of_moving_flags() {
+    let mut scenario = scenario("surveyor_2v2");
+    let flag = &mut scenario.field.flags[0];
+    let points = vec![flag.start, flag.start + Ned::from_xy(0.0, 20.0)];
+    flag.settings.route = Some(Route::new(points, 0.5));
+    let at = scenario.field.at(60.0, 30.0);
+    let mut helm = helm(&scenario);
+    for (time_s, moved_m) in [(0.0, 0.0), (10.0, 5.0), (50.0, 15.0), (80.0, 0.0)] {
+        let mut picture = alone(&scenario, at);
+        picture.stamp.valid_ns = SimTime::from_s(time_s);
+        helm.decide(&picture);
+        let home = scenario.field.flags[0].start + Ned::from_xy(0.0, moved_m);
+        for variable in helm.report().expect("a helm has a report").variables {
+            let got_m: f64 = variable.value.parse().expect("a number");
+            let off_m = got_m - at.distance(home);
+            assert!(
+                off_m.abs() < ROUNDING_M,
+                "{} after {time_s} s: distance too large by {off_m} m",
+                variable.name
+            );
         }
     }
 }

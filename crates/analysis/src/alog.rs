@@ -328,7 +328,7 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Res
             log.row(at_s, &grabbed, "false")?;
             log.row(at_s, "FLAG_RESET", &format!("label={team}"))?;
         }
-        "tagged" | "tagged_by_boundary" => {
+        "tagged" | "tagged_by_boundary" | "tagged_by_obstacle" => {
             log.row(at_s, &of_boat("TAGGED"), "true")?;
             if let Some(by) = &event.other {
                 let key = format!("TAG_RESULT_{}", by.to_uppercase());

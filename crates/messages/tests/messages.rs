@@ -333,6 +333,10 @@ fn every_event_survives_its_record() {
             vehicle: v,
             cause: TagCause::Boundary,
         },
+        Event::Tagged {
+            vehicle: v,
+            cause: TagCause::Obstacle,
+        },
         Event::Untagged(v),
         Event::FlagReturned {
             vehicle: v,

@@ -211,10 +211,10 @@ impl BoatMind {
         let scenario = &self.scenario;
         let team = scenario.team_of(own.vehicle);
         let field = &scenario.field;
-        let at = own.nav.at();
+        let (at, now) = (own.nav.at(), picture.stamp.valid_ns);
         let is_home = field
             .own_flags(team)
-            .any(|(_, home)| home.distance(at) < scenario.rules.untag_radius_m);
+            .any(|(_, flag)| flag.home(now).distance(at) < scenario.rules.radii_of(flag).untag_m);
         if is_home && !std::mem::replace(&mut self.was_home, is_home) {
             // Missions set `TAGGED` themselves to send a boat home; publishing it again corrects
             // the value.
@@ -317,7 +317,7 @@ mod tests {
             seq: 1,
             ..Stamp::default()
         };
-        let at = scenario.field.flags[0].home;
+        let at = scenario.field.flags[0].start;
         let nav = Nav {
             north_m: at.north + 20.0,
             east_m: at.east,
@@ -374,7 +374,7 @@ mod tests {
     #[test]
     fn applications_read_pictures_as_variables_and_their_requests_become_orders() {
         let scenario = scenario();
-        let flag = scenario.field.flags[0].home;
+        let flag = scenario.field.flags[0].start;
         let expected = [
             ("NAV_X", flag.east.to_string()),
             ("NAV_SPEED", "1.5".to_owned()),

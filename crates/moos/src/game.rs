@@ -45,13 +45,13 @@ pub(crate) fn colour(scenario: &Scenario, team: TeamId) -> &str {
 
 /// The marker of flag number `i` at this position.
 pub(crate) fn marker(scenario: &Scenario, i: usize, at: Ned) -> String {
-    let team = scenario.field.flags[i].team;
+    let flag = &scenario.field.flags[i];
     format!(
         "x={},y={},width=3,range={},primary_color={},secondary_color=black,type=circle,label={}",
         decimal(at.east, 2),
         decimal(at.north, 2),
-        decimal(scenario.rules.grab_radius_m, 2),
-        colour(scenario, team),
+        decimal(scenario.rules.radii_of(flag).grab_m, 2),
+        colour(scenario, flag.team),
         flag_label(scenario, i),
     )
 }
@@ -75,6 +75,7 @@ pub(crate) fn flag_label(scenario: &Scenario, i: usize) -> String {
 pub(crate) fn publish(
     community: &mut Community,
     scenario: &Scenario,
+    now: SimTime,
     (flags, score, tagged): (&[FlagView], &[u32], &[VehicleId]),
     out: &mut dyn FnMut(crate::wire::Msg),
 ) {
@@ -101,7 +102,7 @@ pub(crate) fn publish(
         let owner = carrier.map_or_else(String::new, |carrier| {
             format!(",owner={}", name(VehicleId::at(carrier)))
         });
-        summary.push(format!("{}{owner}", marker(scenario, i, flag.home)));
+        summary.push(format!("{}{owner}", marker(scenario, i, flag.home(now))));
         let label = flag_label(scenario, i).to_uppercase();
         publish(&format!("{label}_FLAG_GRABBED"), flag_of(carrier.is_some()));
     }

@@ -199,8 +199,8 @@ mod tests {
     #[test]
     fn requests_that_the_rules_do_not_allow_are_answered_at_once() {
         let scenario = scenario();
-        let home = at(scenario.field.flags[0].home);
-        let away = at(scenario.field.flags[1].home);
+        let home = at(scenario.field.flags[0].start);
+        let away = at(scenario.field.flags[1].start);
         let never = SimTime::from_s(1e6);
         for (own, key, value, want) in [
             (
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn the_referees_decision_or_its_absence_is_the_answer() {
         let scenario = scenario();
-        let own = at(scenario.field.flags[0].home);
+        let own = at(scenario.field.flags[0].start);
         let mut requests = Requests::default();
         for key in READS {
             assert_eq!(

@@ -148,6 +148,7 @@ impl Shoreside<'_> {
         game::publish(
             community,
             scenario,
+            frame.stamp.valid_ns,
             (&frame.flags, &frame.score, &tagged),
             &mut |msg| sent.push(msg),
         );
@@ -162,7 +163,7 @@ impl Shoreside<'_> {
             let marker = game::marker(
                 scenario,
                 i,
-                carrier.map_or(flag.home, |boat| astern(&boat.nav)),
+                carrier.map_or(flag.home(frame.stamp.valid_ns), |boat| astern(&boat.nav)),
             );
             let key = format!("VIEW_MARKER {i}");
             // One variable carries the markers of all flags, so each flag is checked for changes

@@ -129,7 +129,7 @@ pub fn game(scenario: &Scenario, frame: &Frame) -> MarkerArray {
             .and_then(|flag| usize::try_from(flag.carrier).ok());
         let place = carrier
             .and_then(|boat| frame.vehicles.get(boat))
-            .map_or(flag.home, |boat| boat.nav.at());
+            .map_or(flag.home(at), |boat| boat.nav.at());
         let scale = [2.0; 3];
         Marker {
             pose: standing(place),

@@ -13,7 +13,7 @@ pub struct Counts {
     pub captures: u32,
     /// Opponents tagged.
     pub tags: u32,
-    /// Times tagged, by an opponent or by the boundary.
+    /// Times tagged, by an opponent, by the boundary or by an obstacle.
     pub tagged: u32,
     /// Times the boat left the field.
     pub out_of_bounds: u32,

@@ -38,7 +38,7 @@ impl Referee {
         let driven = boat.tagged && self.rules.tagged_boat == TaggedBoat::IsDriven;
         let home = || {
             self.rules
-                .untag_place(&self.field, self.team_of[vehicle.index()], at)
+                .untag_place(&self.field, self.team_of[vehicle.index()], at, standing.now)
         };
         match driven.then(home).flatten() {
             Some(to) => Directive::DrivenHome { to, speed_factor },

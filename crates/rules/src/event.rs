@@ -36,6 +36,8 @@ pub enum TagCause {
     Opponent(VehicleId),
     /// The boat left the field.
     Boundary,
+    /// The boat hit an obstacle or a wall.
+    Obstacle,
 }
 
 /// An event of a game.
@@ -196,6 +198,10 @@ impl From<Logged> for EventRecord {
                 vehicle,
                 cause: TagCause::Boundary,
             } => (3, v(vehicle), -1),
+            Event::Tagged {
+                vehicle,
+                cause: TagCause::Obstacle,
+            } => (22, v(vehicle), -1),
             Event::Untagged(vehicle) => (4, v(vehicle), -1),
             Event::FlagReturned { vehicle, flag } => (5, v(vehicle), f(flag)),
             Event::LeftField(vehicle) => (6, v(vehicle), -1),
@@ -274,6 +280,10 @@ impl EventRecord {
             19 => Event::Released,
             20 => Event::Halted,
             21 => Event::WentOn,
+            22 => Event::Tagged {
+                vehicle: vehicle?,
+                cause: TagCause::Obstacle,
+            },
             _ => return None,
         };
         Some(Logged {

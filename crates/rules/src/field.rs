@@ -9,7 +9,12 @@
 //!              along ▶
 //! ```
 
+mod flag;
 mod own;
+mod route;
+
+pub use flag::{Flag, FlagRadii, FlagSettings};
+pub use route::Route;
 
 use primitives::frame::{LatLon, Ned};
 use primitives::id::TeamId;
@@ -41,6 +46,10 @@ pub struct Plan<E = f64> {
     /// Distance of the flags from the ends, m, above 0 and below half the width. Default: width /
     /// 8.
     pub flag_inset_m: E,
+    /// Settings of the default flags, by team.
+    #[serde(default, skip_serializing_if = "are_empty")]
+    #[schemars(skip)]
+    pub default_flags: [FlagSettings; 2],
     /// Flags in addition to each team's default flag.
     #[serde(default)]
     #[schemars(skip)]
@@ -54,6 +63,10 @@ pub struct Plan<E = f64> {
     pub walls: Walls,
 }
 
+fn are_empty(flags: &[FlagSettings; 2]) -> bool {
+    flags.iter().all(FlagSettings::is_empty)
+}
+
 /// Whether the edges of the field are walls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -65,15 +78,6 @@ pub enum Walls {
     /// A solid wall on every edge.
     #[serde(alias = "AllRound")]
     AllRound,
-}
-
-/// A flag with its team.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Flag {
-    /// The team that defends it.
-    pub team: TeamId,
-    /// The flag's position when no boat carries it.
-    pub home: Ned,
 }
 
 /// A solid obstacle in the water.
@@ -274,14 +278,16 @@ impl Field {
         let mut flags = vec![
             Flag {
                 team: TeamId(0),
-                home: at(plan.flag_inset_m, d / 2.0),
+                start: at(plan.flag_inset_m, d / 2.0),
+                settings: plan.default_flags[0].clone(),
             },
             Flag {
                 team: TeamId(1),
-                home: at(w - plan.flag_inset_m, d / 2.0),
+                start: at(w - plan.flag_inset_m, d / 2.0),
+                settings: plan.default_flags[1].clone(),
             },
         ];
-        flags.extend(&plan.extra_flags);
+        flags.extend_from_slice(&plan.extra_flags);
         let zones = vec![
             Zone::new(vec![at(0.0, 0.0), at(0.0, d), at(half, d), at(half, 0.0)]),
             Zone::new(vec![at(half, 0.0), at(half, d), at(w, d), at(w, 0.0)]),
@@ -485,8 +491,8 @@ mod tests {
     #[test]
     fn the_axis_aligned_field_has_exact_coordinates() {
         let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
-        assert_eq!(field.flags[0].home, Ned::from_xy(20.0, 40.0));
-        assert_eq!(field.flags[1].home, Ned::from_xy(140.0, 40.0));
+        assert_eq!(field.flags[0].start, Ned::from_xy(20.0, 40.0));
+        assert_eq!(field.flags[1].start, Ned::from_xy(140.0, 40.0));
         assert_eq!(
             field.scrimmage,
             [Ned::from_xy(80.0, 0.0), Ned::from_xy(80.0, 80.0)]
@@ -498,8 +504,8 @@ mod tests {
     fn published_fields_come_out_where_they_were_sailed() {
         // Corners and flags as in the 2025 West Point and 2023 Jervis Bay missions.
         let popolopen = Field::new(plan((225.4522, 42.2876), 20.0, 160.0, 80.0, 20.0));
-        assert_near(popolopen.flags[0].home, 194.71, 74.76);
-        assert_near(popolopen.flags[1].home, 235.75, 187.53);
+        assert_near(popolopen.flags[0].start, 194.71, 74.76);
+        assert_near(popolopen.flags[1].start, 235.75, 187.53);
         assert_near(popolopen.corners[1], 150.28, 69.65);
         assert_near(popolopen.corners[2], 205.0, 220.0);
         assert_near(popolopen.corners[3], 280.18, 192.64);

@@ -18,7 +18,6 @@ impl Referee {
         look: &Look<'_>,
         events: &mut Vec<Event>,
     ) {
-        let reach_squared = self.rules.grab_radius_m * self.rules.grab_radius_m;
         notes.claims.clear();
         for (on, (flag, state)) in self.field.flags.iter().zip(&standing.flags).enumerate() {
             let has_just_come =
@@ -26,13 +25,15 @@ impl Referee {
             if state.carrier.is_some() || has_just_come {
                 continue;
             }
+            let reach_m = self.rules.radii_of(flag).grab_m;
+            let home = flag.home(standing.now);
             for (by, boat) in standing.vehicles.iter().enumerate() {
                 if self.team_of[by] == flag.team || !boat.acts() || boat.carrying.is_some() {
                     continue;
                 }
                 let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[by].grab;
-                let distance_squared = look.legs[by].to.distance_squared(flag.home);
-                if asks && distance_squared < reach_squared {
+                let distance_squared = look.legs[by].to.distance_squared(home);
+                if asks && distance_squared < reach_m * reach_m {
                     notes.claims.push(Claim {
                         by: by as u16,
                         on: on as u16,
@@ -83,7 +84,9 @@ impl Referee {
                     .all(|(own, _)| standing.flags[own.index()].carrier.is_none())
             };
             if standing.vehicles[carrier.index()].acts()
-                && self.rules.is_capture_place(&self.field, team, here)
+                && self
+                    .rules
+                    .is_capture_place(&self.field, team, here, standing.now)
                 && (!self.rules.capture_needs_own_flag || own_flags_home())
             {
                 notes.claims.push(Claim {

@@ -21,7 +21,7 @@ impl Referee {
             boat.at_home = !boat.outside
                 && self
                     .rules
-                    .is_untag_place(&self.field, self.team_of[i], at(i));
+                    .is_untag_place(&self.field, self.team_of[i], at(i), standing.now);
             let freed = match self.rules.untag_on {
                 UntagOn::Entering => boat.at_home && !was_at_home,
                 UntagOn::Inside => boat.at_home,

@@ -16,8 +16,10 @@ pub mod field;
 mod flag;
 mod home;
 mod keepout;
+mod obstacle;
 mod place;
 mod power_play;
+mod radii;
 mod referee;
 mod sharing;
 mod standing;
@@ -27,6 +29,7 @@ pub use ability::{Ability, tag_wait_s};
 pub use directive::Directive;
 pub use event::Event;
 pub use field::Field;
+pub use radii::Radii;
 pub use referee::{Asks, Look, Notes, Referee};
 pub use sharing::Sharing;
 pub use standing::{FlagStanding, Standing, VehicleStanding};
@@ -113,6 +116,11 @@ pub struct Rules {
     /// Whether a boat that leaves the field is tagged.
     #[schemars(extend("default" = true))]
     pub boundary_tags: bool,
+    /// Distance from obstacles and walls below which a boat is tagged and loses its flag, m; 0:
+    /// never.
+    #[serde(default)]
+    #[schemars(!default, range(min = 0, max = 100), extend("default" = 0))]
+    pub obstacle_tag_m: f64,
     /// Who drives a tagged boat.
     #[schemars(extend("default" = "drives_itself"))]
     pub tagged_boat: TaggedBoat,

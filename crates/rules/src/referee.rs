@@ -94,6 +94,7 @@ impl Referee {
             // Check the boundary first, because a boat that has left is out of the taggers' reach
             // but must still lose its flag.
             self.watch_boundary(standing, at, events);
+            self.watch_obstacles(standing, at, events);
         }
         if flags && self.rules.resolution == Resolution::InTurn {
             self.grab(standing, notes, look, events);

@@ -28,6 +28,12 @@ impl Scenario {
                 .any(|boat| are_random_sensors(&boat.sensors))
     }
 
+    /// Whether the number of boats depends on the seed.
+    pub fn draws_fleets(&self) -> bool {
+        let mut drawn = self.drawn.iter();
+        drawn.any(|drawn| drawn.parameter.starts_with("game/fleet."))
+    }
+
     /// Whether a team assigns different roles to its boats in a random order.
     fn deals_roles(&self) -> bool {
         let fellows = |(i, one): (usize, &Vehicle)| {

@@ -17,8 +17,8 @@ const WITHIN_SIGMA: f64 = 3.0;
 /// A number drawn for a game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drawn {
-    /// Owner and key, as in `blue_one/hull.mass_kg`; the owner is a vehicle, `sea`, `link` or
-    /// `sharing`.
+    /// Owner and key, as in `blue_one/hull.mass_kg`; the owner is a vehicle, `sea`, `link`,
+    /// `sharing` or `game`.
     pub parameter: String,
     /// The number, in the file's unit.
     pub value: f64,
@@ -64,20 +64,18 @@ pub(super) fn distribution_kind(table: &Table) -> Option<&'static str> {
         .find(|kind| table.contains_key(*kind))
 }
 
-/// The number drawn from the distribution at `path`; reports an invalid one.
+/// The number drawn from the distribution at `path`, a whole one if `is_whole`; reports an invalid
+/// distribution.
 pub(super) fn draw(
     loader: &Loader,
     node: &Node,
     table: &Table,
     owner: &Owner<'_>,
-    path: &str,
+    (path, is_whole): (&str, bool),
 ) -> Option<Value> {
     let path = path.get(owner.path_from..).unwrap_or_default();
-    let Some(value) = number(
-        table,
-        loader.drawing,
-        &format!("draw/{}/{path}", owner.name),
-    ) else {
+    let stream = format!("draw/{}/{path}", owner.name);
+    let Some(value) = number(table, loader.drawing, &stream, is_whole) else {
         let key = path.rsplit('.').next().unwrap_or(path);
         let message = format!(
             "{key} is not a valid distribution, expected one of {{ uniform = [low, high] }} with low < high, {{ normal = [mean, sigma] }}, \
@@ -101,7 +99,7 @@ pub(super) fn draw(
 }
 
 /// The number drawn from a distribution with this stream; `None` if the distribution is invalid.
-fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
+fn number(table: &Table, drawing: Drawing, stream: &str, is_whole: bool) -> Option<f64> {
     let kind = distribution_kind(table)?;
     let finite = |node: &Node| node.as_number().filter(|number| number.is_finite());
     let Value::List(items) = &table[kind].value else {
@@ -119,6 +117,14 @@ fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
         Drawing::Seed(seed) => within(&mut stream(seed)),
     };
     match (kind, numbers.as_slice()) {
+        ("uniform", &[low, high]) if low <= high && is_whole => {
+            let is_sound = times == 1.0 && low.fract() == 0.0 && high.fract() == 0.0;
+            is_sound.then(|| match drawing {
+                Drawing::Least => low,
+                Drawing::Greatest => high,
+                Drawing::Seed(seed) => low + stream(seed).below((high - low) as u64 + 1) as f64,
+            })
+        }
         ("uniform", &[low, high]) if low <= high => {
             let (low, high) = (
                 (low * times).min(high * times),

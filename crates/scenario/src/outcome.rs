@@ -83,6 +83,10 @@ impl EventOutcome {
                 cause: TagCause::Boundary,
                 ..
             } => "tagged_by_boundary",
+            Event::Tagged {
+                cause: TagCause::Obstacle,
+                ..
+            } => "tagged_by_obstacle",
             event => event.into(),
         };
         let whose = match logged.event {
@@ -112,6 +116,7 @@ impl EventOutcome {
             "flag_returned" => format!("{who} loses the {team} flag"),
             "tagged" => format!("{who} is tagged by {other}"),
             "tagged_by_boundary" => format!("{who} is tagged by the boundary"),
+            "tagged_by_obstacle" => format!("{who} is tagged by an obstacle"),
             "untagged" => format!("{who} is untagged and back in play"),
             "left_field" => format!("{who} leaves the field"),
             "returned_to_field" => format!("{who} is back on the field"),

@@ -23,14 +23,15 @@ pub(super) fn validated<'a>(
     root: &'a Json,
     owner: &'a str,
 ) -> (Json, Vec<String>) {
-    let owner = root.get(DRAWN).map(|_| Owner {
+    let file = Owner {
         name: owner,
         path_from: 0,
-    });
+    };
     let mut validator = Validator {
         loader,
         path: String::new(),
-        owner,
+        file,
+        owner: root.get(DRAWN).map(|_| file),
         wrong: vec![],
     };
     let value = validator.value(tree, root);
@@ -44,6 +45,8 @@ struct Validator<'a> {
     loader: &'a Loader,
     /// Path from the root of the file to the current value, as in `team.1.name`.
     path: String,
+    /// The owner of numbers that belong to the file as a whole.
+    file: Owner<'a>,
     /// The owner for which numbers are drawn; `None` where distributions are not allowed.
     owner: Option<Owner<'a>>,
     /// The paths of faulty or missing values.
@@ -118,7 +121,8 @@ impl<'a> Validator<'a> {
         let Some(owner) = &self.owner else {
             return self.wrong_type(node, schema);
         };
-        match draw(self.loader, node, table, owner, &self.path) {
+        let is_whole = takes(schema, "integer");
+        match draw(self.loader, node, table, owner, (&self.path, is_whole)) {
             Some(value) => {
                 let drawn = Node { value, ..*node };
                 if self.fits(&drawn, schema) {
@@ -248,7 +252,9 @@ impl<'a> Validator<'a> {
     /// The value of an existing key.
     fn property(&mut self, key: &'a str, node: &'a Node, about: &'a Json) -> Option<Json> {
         let outer = self.owner;
-        if about.get(DRAWN).is_some() {
+        if about.get(DRAWN).is_some() && is_number(about) {
+            self.owner = Some(self.file);
+        } else if about.get(DRAWN).is_some() {
             // A shared table, such as a game's link, draws its own numbers.
             self.owner = Some(Owner {
                 name: key,

@@ -209,3 +209,42 @@ fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place(
     let told = scenario::load(&path).unwrap_err().to_string();
     assert!(told.contains("duration_s is a table, expected a number"));
 }
+
+#[test]
+fn the_size_of_each_fleet_is_drawn_for_every_game_as_a_whole_number() {
+    let dir = tempfile::tempdir().unwrap();
+    let fleets = "[[fleet]]\nteam = \"blue\"\ncount = { uniform = [1, 3] }\n\
+                  [[fleet]]\nteam = \"red\"\ncount = { choice = [2, 5] }\n";
+    let first = scenario::load(&written(dir.path(), "", "", fleets)).unwrap();
+    assert!(first.draws_fleets() && first.is_random());
+    let mut seen = [[0; 6]; 2];
+    for seed in 1..=200 {
+        let game = first.of_seed(seed).unwrap();
+        let count = |team: usize| {
+            let vehicles = game.vehicles.iter();
+            let fleet = vehicles.filter(|one| one.team.index() == team && one.name.len() < 7);
+            fleet.count()
+        };
+        for (team, fleet) in ["game/fleet.0.count", "game/fleet.1.count"]
+            .iter()
+            .enumerate()
+        {
+            assert_eq!(value(&game, fleet), count(team) as f64);
+            seen[team][count(team)] += 1;
+        }
+        assert_eq!(first.of_seed(seed).unwrap(), game);
+    }
+    // Both fleets draw on their own, and all sizes are equally likely.
+    assert!(seen[0][1..4].iter().all(|times| *times > 45), "{seen:?}");
+    assert!(seen[1][2] > 75 && seen[1][5] > 75, "{seen:?}");
+}
+
+#[test]
+fn a_fleet_of_half_a_boat_is_refused() {
+    for count in ["uniform = [1.5, 3]", "uniform = [0, 3]", "normal = [3, 1]"] {
+        let dir = tempfile::tempdir().unwrap();
+        let fleet = format!("fleet = [{{ team = \"red\", count = {{ {count} }} }}]");
+        let error = scenario::load(&written(dir.path(), "", "", &fleet)).unwrap_err();
+        assert!(error.to_string().contains("count is "), "{count}: {error}");
+    }
+}

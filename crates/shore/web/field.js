@@ -150,11 +150,10 @@ function ringsOf(radii) {
 }
 
 function drawCircles(context, view, chart) {
-  const rings = ringsOf(chart.radii ?? {});
   context.textAlign = 'center';
   context.textBaseline = 'bottom';
   for (const flag of chart.field.flags ?? []) {
-    for (const [metres, word, dash] of rings) {
+    for (const [metres, word, dash] of ringsOf(flag.radii ?? chart.radii ?? {})) {
       const px = metres * view.scale;
       if (px < 5) continue;
       context.beginPath();

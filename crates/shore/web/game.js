@@ -1,6 +1,7 @@
 // The game as shown: boats as arrays of numbers, events, and the server's reports.
 
 import { readerOf } from './cdr.js';
+import { moveFlags } from './flag.js';
 import { Trails } from './trail.js';
 import { plain } from './words.js';
 
@@ -159,6 +160,7 @@ export class Game {
     this.gap_ms = fresh || gap_ms > GAP_MAX_MS ? 0 : this.gap_ms * 0.7 + gap_ms * 0.3;
     this.arrival_ms = now_ms;
     this.t_s = t_s;
+    moveFlags(this.chart.field?.flags ?? [], t_s);
     this.tick = raw.stamp.seq;
     this.frames += 1;
     const still = fresh || !this.smooth || this.gap_ms < GAP_MIN_MS;

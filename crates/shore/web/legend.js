@@ -45,8 +45,9 @@ function entriesOf(chart) {
   }]);
   entries.push(['flag; on a hull, carried', (context) => drawFlag(context, WIDTH / 2 - 5, HEIGHT - 3, 0, 12)]);
   if (radii.tag_m > 0) entries.push([`tag range, ${radii.tag_m} m`, (context) => ring(context, 10, [3, 4], teamColour(0))]);
-  if (radii.grab_m > 0) entries.push([`grab range, ${radii.grab_m} m`, (context) => ring(context, 10, [], teamColour(0))]);
-  if (radii.keepout_m > 0) entries.push([`keep out, ${radii.keepout_m} m`, (context) => ring(context, 10, [2, 4], teamColour(0))]);
+  const around = (key) => [...new Set((field?.flags ?? []).map((flag) => (flag.radii ?? radii)[key]))].filter((metres) => metres > 0).join(' or ');
+  if (around('grab_m')) entries.push([`grab range, ${around('grab_m')} m`, (context) => ring(context, 10, [], teamColour(0))]);
+  if (around('keepout_m')) entries.push([`keep out, ${around('keepout_m')} m`, (context) => ring(context, 10, [2, 4], teamColour(0))]);
   if (field?.scrimmage) entries.push(['scrimmage line', (context) => line(context, [12, 5, 2, 5], palette.edge)]);
   if (chart.vehicles.some(({ external }) => external)) {
     entries.push(['geofence of real boats (dotted: keep-out)', (context) => line(context, [12, 5], palette.danger, 2)]);

@@ -9,7 +9,7 @@ const LINES_MAX = 300;
 /** The events of each filter. */
 const KINDS = {
   flags: ['grabbed', 'captured', 'flag_returned', 'ended'],
-  tags: ['tagged', 'tagged_by_boundary', 'untagged'],
+  tags: ['tagged', 'tagged_by_boundary', 'tagged_by_obstacle', 'untagged'],
   collisions: ['collided', 'entered_keepout'],
   trouble: ['collided', 'disabled', 'agent_lost', 'agent_back', 'quarantined', 'nav_lost', 'nav_back', 'e_stopped', 'released', 'halted',
     'went_on', 'failsafe', 'left_field'],

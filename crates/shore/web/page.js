@@ -523,7 +523,8 @@ class Page {
     this.north.tell();
     const shown = this.controls.shown;
     this.sea.draw(view, game.t_s, shown, now_ms);
-    const look = `${view.version} ${palette.version} ${this.controls.shownVersion}`;
+    const flagsMove = game.chart.field?.flags?.some(({ route }) => route);
+    const look = `${view.version} ${palette.version} ${this.controls.shownVersion} ${flagsMove ? game.t_s : ''}`;
     if (look !== this.drawnField) drawField(this.field, view, game.chart, shown, this.background);
     this.drawnField = look;
     this.trails.draw(game, view, shown, `${this.controls.shownVersion} ${index}`, index, now_ms);

@@ -8,7 +8,7 @@ import { clock, clockShort, make, number, options, plain, show } from './words.j
 export const KINDS = [
   ['Grabs', 'g', ['grabbed'], 'triangle'],
   ['Captures', 'c', ['captured'], 'diamond'],
-  ['Tags', 't', ['tagged', 'tagged_by_boundary'], 'dot'],
+  ['Tags', 't', ['tagged', 'tagged_by_boundary', 'tagged_by_obstacle'], 'dot'],
   ['Collisions', 'b', ['collided'], 'cross'],
   ['Failsafes', 'i', ['failsafe'], 'square'],
 ];

@@ -13,7 +13,7 @@ pub(super) fn asks_of<'a>(
     picture: &'a Picture,
 ) -> impl Iterator<Item = (VehicleId, Asks)> {
     let tag_m = rules.tag_radius_m;
-    let grab_m = rules.grab_radius_m;
+    let now = picture.stamp.valid_ns;
     picture.own.iter().map(move |boat| {
         let at = boat.nav.at();
         let is_near = |other: Ned, reach_m: f64| at.distance_squared(other) < reach_m * reach_m;
@@ -35,7 +35,7 @@ pub(super) fn asks_of<'a>(
                     tag_m,
                 )
             }),
-            grab: flags.any(|flag| is_near(flag.home, grab_m)),
+            grab: flags.any(|flag| is_near(flag.home(now), rules.radii_of(flag).grab_m)),
         };
         (boat.vehicle, asks)
     })

@@ -4,5 +4,6 @@ mod chance;
 mod drift;
 mod encounters;
 mod files;
+mod flag;
 mod game;
 mod shipped_strategies;

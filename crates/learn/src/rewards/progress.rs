@@ -2,6 +2,7 @@
 
 use primitives::frame::Ned;
 use primitives::id::TeamId;
+use primitives::time::SimTime;
 use rules::field::Field;
 use sim::Contest;
 
@@ -82,14 +83,21 @@ pub fn progress(contest: &Contest, among_others: bool) -> Vec<BoatProgress> {
             team: scenario.team_of(boat.vehicle),
         };
     }
-    of_boats(&scenario.field, &boats, among_others)
+    of_boats((&scenario.field, contest.now()), &boats, among_others)
 }
 
-fn of_boats(field: &Field, boats: &[Placed], among_others: bool) -> Vec<BoatProgress> {
-    let posts = among_others.then(|| Posts::of(field, boats));
+fn of_boats(
+    (field, now): (&Field, SimTime),
+    boats: &[Placed],
+    among_others: bool,
+) -> Vec<BoatProgress> {
+    let posts = among_others.then(|| Posts::of((field, now), boats));
     let progress = |(i, boat): (usize, &Placed)| {
-        let away =
-            |team: TeamId| boat.at.distance(flag_near(field, team, boat.at)) / field.plan.width_m;
+        let away = |team: TeamId| {
+            let flag = field.nearest_own_flag(team, boat.at, now);
+            let (_, home) = flag.expect("each team has a flag");
+            boat.at.distance(home) / field.plan.width_m
+        };
         let Placed {
             tagged,
             carrying,
@@ -121,13 +129,14 @@ struct Posts {
 }
 
 impl Posts {
-    fn of(field: &Field, boats: &[Placed]) -> Posts {
+    fn of((field, now): (&Field, SimTime), boats: &[Placed]) -> Posts {
         let stand_off_m = STAND_OFF * field.plan.width_m;
         let flag = [0, 1].map(|team: u8| {
             let team = TeamId(team);
             let threats = field
                 .own_flags(team)
-                .filter_map(|(_, home)| Some((home, nearest_enemy(boats, team, home)?)));
+                .map(|(_, flag)| flag.home(now))
+                .filter_map(|home| Some((home, nearest_enemy(boats, team, home)?)));
             let worst = threats.min_by(|a, b| a.0.distance(a.1).total_cmp(&b.0.distance(b.1)));
             worst.map(|(home, enemy)| between(home, enemy, stand_off_m))
         });
@@ -174,13 +183,6 @@ impl Posts {
     }
 }
 
-/// The home of the team's nearest flag.
-fn flag_near(field: &Field, team: TeamId, at: Ned) -> Ned {
-    field
-        .nearest_own_flag(team, at)
-        .expect("each team has a flag")
-}
-
 /// The position of the team's nearest untagged enemy.
 fn nearest_enemy(boats: &[Placed], team: TeamId, to: Ned) -> Option<Ned> {
     let enemies = boats
@@ -206,7 +208,8 @@ mod tests {
     use super::{Among, BoatProgress, Placed, of_boats};
     use primitives::frame::LatLon;
     use primitives::id::TeamId;
-    use rules::field::{Field, Flag, Plan, Walls};
+    use primitives::time::SimTime;
+    use rules::field::{Field, Flag, FlagSettings, Plan};
 
     /// 160 m by 80 m, with flags at (20, 40) and (140, 40). The first team's side ends at 80 m.
     fn field() -> Field {
@@ -221,9 +224,7 @@ mod tests {
             width_m: 160.0,
             depth_m: 80.0,
             flag_inset_m: 20.0,
-            extra_flags: vec![],
-            obstacles: vec![],
-            walls: Walls::None,
+            ..Plan::default()
         })
     }
 
@@ -244,7 +245,7 @@ mod tests {
                 }
             })
             .collect();
-        of_boats(&field, &boats, true)
+        of_boats((&field, SimTime::ZERO), &boats, true)
     }
 
     fn close(got: f64, want: f64) {
@@ -353,7 +354,8 @@ mod tests {
         for (team, along_m) in [(0, 20.0), (1, 140.0)] {
             plan.extra_flags.push(Flag {
                 team: TeamId(team),
-                home: field().at(along_m, 10.0),
+                start: field().at(along_m, 10.0),
+                settings: FlagSettings::default(),
             });
         }
         let field = Field::new(plan);
@@ -370,7 +372,7 @@ mod tests {
             boat(40.0, 10.0, 0),
             boat(70.0, 10.0, 1),
         ];
-        let out = of_boats(&field, &boats, true);
+        let out = of_boats((&field, SimTime::ZERO), &boats, true);
         close(out[0].from_home, 0.25);
         close(out[0].from_flag, 0.5);
         close(out[1].among.on_guard, 1.0);
@@ -385,7 +387,7 @@ mod tests {
             tagged: false,
             carrying: true,
         };
-        let seen = of_boats(&field, &[boat], false)[0];
+        let seen = of_boats((&field, SimTime::ZERO), &[boat], false)[0];
         assert!(
             seen.among == Among::default() && seen.carrying && seen.from_home < 1e-12,
             "{seen:?}"

@@ -1,8 +1,9 @@
 //! A team's own part of the field: its side, its flags and its corners.
 
-use super::Field;
+use super::{Field, Flag};
 use primitives::frame::Ned;
 use primitives::id::{FlagId, TeamId};
+use primitives::time::SimTime;
 
 impl Field {
     /// Whether `at` is on `team`'s own side; the scrimmage line is on both.
@@ -13,18 +14,19 @@ impl Field {
             .is_some_and(|zone| zone.contains(at))
     }
 
-    /// The homes of `team`'s own flags.
+    /// The flags of `team`.
     #[inline]
-    pub fn own_flags(&self, team: TeamId) -> impl Iterator<Item = (FlagId, Ned)> {
+    pub fn own_flags(&self, team: TeamId) -> impl Iterator<Item = (FlagId, &Flag)> {
         let flags = self.flags.iter().enumerate();
         flags
             .filter(move |(_, flag)| flag.team == team)
-            .map(|(i, flag)| (FlagId(i as u8), flag.home))
+            .map(|(i, flag)| (FlagId(i as u8), flag))
     }
 
-    /// The home nearest to `at` among `team`'s own flags; `None` without flags.
-    pub fn nearest_own_flag(&self, team: TeamId, at: Ned) -> Option<Ned> {
-        at.nearest_of(self.own_flags(team).map(|(_, home)| home))
+    /// The flag of `team` with the home nearest to `at`, and that home; `None` without flags.
+    pub fn nearest_own_flag(&self, team: TeamId, at: Ned, now: SimTime) -> Option<(&Flag, Ned)> {
+        let flags = self.own_flags(team).map(|(_, flag)| (flag, flag.home(now)));
+        flags.min_by(|(_, x), (_, y)| at.distance_squared(*x).total_cmp(&at.distance_squared(*y)))
     }
 
     /// The corners of `team`'s own end.

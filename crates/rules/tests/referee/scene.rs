@@ -5,7 +5,7 @@ use primitives::reseed::Seeds;
 use primitives::stream::Stream;
 use primitives::{FlagId, Leg, Ned, SimTime, TeamId, VehicleId};
 use rules::event::{Event, TagCause};
-use rules::field::{Field, Flag, Plan};
+use rules::field::{Field, Flag, FlagSettings, Plan};
 use rules::{Asks, Directive, Look, Notes, Referee, Rules, Standing};
 
 pub(crate) struct Scene {
@@ -45,7 +45,8 @@ fn rectangle(x_m: f64, width_m: f64, extra_flags: Vec<Flag>) -> Field {
 pub(crate) fn flag(team: u8, x: f64, y: f64) -> Flag {
     Flag {
         team: TeamId(team),
-        home: Ned::from_xy(x, y),
+        start: Ned::from_xy(x, y),
+        settings: FlagSettings::default(),
     }
 }
 

@@ -3,7 +3,9 @@
 //! - `## NAME` begins a scene, `# …` is a comment.
 //! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, its overrides (JSON values, times
 //!   in nanoseconds), and `boats=2` for each team (default 1), `sides=3` (default 2),
-//!   `flag=[TEAM,X,Y]` for an extra flag.
+//!   `flag=[TEAM,X,Y]` for an extra flag, `own=[FLAG,{KEY:VALUE}]` for a flag's own radii,
+//!   `route=[FLAG,SPEED,[[X,Y],…]]` for a moving flag,
+//!   `obstacle=[X,Y,RADIUS]`, `walls="all_round"`.
 //! - `0 at 60 40; 1 at 65 40 -> Tagged 1 Opponent 0, …`: boats are placed at x and y in metres, and
 //!   the next check returns exactly these events, in this order; or `nothing`. Boats stay until
 //!   they are placed elsewhere. `0 goes 60 40` moves a boat there from its position. `0 asks tag`
@@ -17,6 +19,7 @@ use crate::preset;
 use crate::scene::{Scene, field, flag, teams_of, three_sided};
 use primitives::{Ned, SimTime, VehicleId};
 use rules::Event;
+use rules::field::{Field, FlagRadii, Obstacle, Route};
 use serde_json::Value;
 use std::path::Path;
 
@@ -43,16 +46,13 @@ fn opened(line: &str) -> Told<Scene> {
     let mut rules = serde_json::to_value(book.ok_or("no such book")?).map_err(|e| e.to_string())?;
     let mut boats = 1;
     let mut sides = 2;
-    let mut extra_flags = vec![];
+    let mut field = field(vec![]);
     for word in words {
         let (key, value) = word.split_once('=').ok_or("expected KEY=VALUE")?;
         match key {
             "boats" => boats = read(value)?,
             "sides" => sides = read(value)?,
-            "flag" => {
-                let (team, x, y) = read(value)?;
-                extra_flags.push(flag(team, x, y));
-            }
+            "flag" | "own" | "route" | "walls" | "obstacle" => change(&mut field, key, value)?,
             key => {
                 *rules
                     .pointer_mut(&pointer(key))
@@ -64,8 +64,37 @@ fn opened(line: &str) -> Told<Scene> {
     Ok(if sides == 3 {
         three_sided(rules)
     } else {
-        Scene::on(rules, field(extra_flags), teams_of(boats, sides))
+        Scene::on(rules, field, teams_of(boats, sides))
     })
+}
+
+/// Applies a word about the field.
+fn change(field: &mut Field, key: &str, value: &str) -> Told<()> {
+    match key {
+        "flag" => {
+            let (team, x, y) = read(value)?;
+            field.flags.push(flag(team, x, y));
+        }
+        "own" => {
+            let (flag, radii): (usize, FlagRadii) = read(value)?;
+            field.flags[flag].settings.radii = radii;
+        }
+        "route" => {
+            let (flag, speed_m_s, corners): (usize, f64, Vec<(f64, f64)>) = read(value)?;
+            let flag = &mut field.flags[flag];
+            let corners = corners.into_iter().map(|(x, y)| Ned::from_xy(x, y));
+            let points = std::iter::once(flag.start).chain(corners).collect();
+            flag.settings.route = Some(Route::new(points, speed_m_s));
+        }
+        "walls" => field.plan.walls = read(value)?,
+        _ => {
+            let (x, y, radius_m) = read(value)?;
+            let centre = Ned::from_xy(x, y);
+            let obstacle = Obstacle::Circle { centre, radius_m };
+            field.plan.obstacles.push(obstacle);
+        }
+    }
+    Ok(())
 }
 
 /// An event in scene notation: its name, then the ids, as in `Tagged 1 Opponent 0`.

@@ -273,6 +273,10 @@ fn assert_lawful(
             vehicle,
             cause: TagCause::Boundary,
         } => assert!(!field.contains(at(vehicle))),
+        Event::Tagged {
+            cause: TagCause::Obstacle,
+            ..
+        } => unreachable!("the field has no obstacles"),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
             // Under sequential rules, a boat may be tagged after its grab, and a flag may be
@@ -283,7 +287,7 @@ fn assert_lawful(
                     && (!boat.tagged || in_turn)
             );
             assert!(field.contains(at(vehicle)));
-            assert!(at(vehicle).distance(field.flags[flag.index()].home) < rules.grab_radius_m);
+            assert!(at(vehicle).distance(field.flags[flag.index()].start) < rules.grab_radius_m);
             assert!(carrier(flag).is_none() || in_turn);
         }
         Event::Captured { vehicle, flag } => {

@@ -2,6 +2,7 @@
 
 use super::boat::{FASTEST_PER_TICK, fastest_decay};
 use super::file_cache::FileCache;
+use super::rules::keepout_faults;
 use super::start_position;
 use crate::boat::Boat;
 use crate::kind::ScenarioFile;
@@ -69,6 +70,7 @@ impl ScenarioFile for Scenario {
         check_tick(document, tick, &fleet.boats.items);
         check_looks(document, tick, rules.as_ref());
         check_reseed(document);
+        check_flags(document, field.as_ref(), rules.as_ref());
         let Fleet {
             boats,
             strategies,
@@ -157,6 +159,22 @@ fn check_duration(document: &Document<raw::Game>) {
         let message =
             "duration_s of the game overrides rules.time_limit_s; set game.duration_s instead";
         document.note("duration_s", message);
+    }
+}
+
+/// Checks the flags' own radii together with those of the rules.
+fn check_flags(document: &Document<raw::Game>, field: Option<&Field>, rules: Option<&Rules>) {
+    let Some((field, rules)) = field.zip(rules) else {
+        return;
+    };
+    let special = field.flags.iter().enumerate();
+    for (i, flag) in special.filter(|(_, flag)| !flag.settings.is_empty()) {
+        for fault in keepout_faults(rules, rules.radii_of(flag)) {
+            document.note(
+                "field",
+                format!("flag {i} of field {}: {fault}", field.plan.name),
+            );
+        }
     }
 }
 

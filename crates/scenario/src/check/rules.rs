@@ -2,7 +2,7 @@
 
 use crate::kind::ScenarioFile;
 use crate::read::Document;
-use rules::{CaptureAt, Rules, UntagAt};
+use rules::{CaptureAt, Radii, Rules, UntagAt};
 
 impl ScenarioFile for Rules {
     type Keys = Rules;
@@ -14,29 +14,36 @@ impl ScenarioFile for Rules {
         rules.win_score = rules.win_score.filter(|win_score| *win_score > 0);
         let sharing = &mut rules.sharing;
         sharing.view_rad = sharing.view_rad.filter(|rad| *rad < f64::to_radians(360.0));
-        // Outside a keep-out circle, boats must still be able to grab, capture and untag at their
-        // own flag.
-        let needed = [
-            (
-                rules.untag_at == UntagAt::OwnFlag,
-                "untag_radius_m",
-                rules.untag_radius_m,
-            ),
-            (
-                rules.capture_at == CaptureAt::OwnFlag,
-                "capture_radius_m",
-                rules.capture_radius_m,
-            ),
-        ];
-        for (applies, key, radius_m) in needed {
-            let found_m = rules.flag_keepout_m;
-            if applies && found_m >= radius_m && document.is_sound("") {
-                let message = format!(
-                    "flag_keepout_m is {found_m}, expected less than {key}, which is {radius_m}"
-                );
+        for message in keepout_faults(&rules, rules.radii()) {
+            if document.is_sound("") {
                 document.note("flag_keepout_m", message);
             }
         }
         document.is_faultless().then_some(rules)
     }
+}
+
+/// Faults in the radii of a flag: outside its keep-out circle, its boats must still be able to
+/// capture and untag there.
+pub(super) fn keepout_faults(rules: &Rules, radii: Radii) -> impl Iterator<Item = String> {
+    let found_m = radii.keepout_m;
+    let needed = [
+        (
+            rules.untag_at == UntagAt::OwnFlag,
+            "untag_radius_m",
+            radii.untag_m,
+        ),
+        (
+            rules.capture_at == CaptureAt::OwnFlag,
+            "capture_radius_m",
+            radii.capture_m,
+        ),
+    ];
+    let is_broken = move |(applies, _, radius_m): &(bool, _, f64)| *applies && found_m >= *radius_m;
+    needed
+        .into_iter()
+        .filter(is_broken)
+        .map(move |(_, key, radius_m)| {
+            format!("flag_keepout_m is {found_m}, expected less than {key}, which is {radius_m}")
+        })
 }

@@ -1,6 +1,6 @@
 //! A field file as written.
 
-use rules::field::Plan;
+use rules::field::{FlagRadii, Plan};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -12,7 +12,7 @@ pub struct Field {
     pub(crate) plan: Plan<Option<f64>>,
     /// Obstacles.
     pub(crate) obstacle: Vec<Obstacle>,
-    /// Flags in addition to each team's default flag.
+    /// Flags in addition to each team's default flag, and the settings of those.
     #[schemars(length(max = 100))]
     pub(crate) flag: Vec<Flag>,
 }
@@ -41,9 +41,26 @@ pub(crate) struct Circle {
 pub(crate) struct Flag {
     /// The team that defends it.
     pub(crate) team: Side,
-    /// Position, [x, y] in m, inside the field.
+    /// Position, [x, y] in m, inside the field. Default: the entry describes the team's default
+    /// flag instead of an additional one.
     #[schemars(inner(range(min = -1000000, max = 1000000)))]
-    pub(crate) at: [f64; 2],
+    pub(crate) at: Option<[f64; 2]>,
+    #[serde(flatten)]
+    pub(crate) radii: FlagRadii,
+    /// The closed path along which the flag's home moves from the start of the game. Default: it
+    /// does not move.
+    pub(crate) route: Option<Route>,
+}
+
+/// A closed path at constant speed.
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Route {
+    /// Corners after the flag's position, [x, y] in m, inside the field; the last leg leads back.
+    #[schemars(length(min = 1, max = 100), inner(inner(range(min = -1000000, max = 1000000))))]
+    pub(crate) points: Vec<[f64; 2]>,
+    /// Speed, m/s.
+    #[schemars(range(min = 0.001, max = 60))]
+    pub(crate) speed_m_s: f64,
 }
 
 /// A team, by its order in the game file; a field does not know the teams' names.

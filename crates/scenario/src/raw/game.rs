@@ -97,8 +97,8 @@ pub(crate) struct Fleet {
     /// Name of their team.
     #[schemars(length(min = 1), extend("x-expected" = "the name of a team"))]
     pub(crate) team: String,
-    /// Number of boats.
-    #[schemars(range(min = 1, max = 10000))]
+    /// Number of boats; `{ uniform = [1, 6] }` draws it for every game.
+    #[schemars(range(min = 1, max = 10000), extend("x-drawn" = true))]
     pub(crate) count: usize,
     /// Name pattern; {} becomes the number, from 1. Default: team name, _ and {}.
     pub(crate) name: Option<String>,

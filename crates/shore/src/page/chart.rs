@@ -4,8 +4,8 @@
 
 use messages::water::{PlaneWave, Water};
 use primitives::{Ned, math};
-use rules::Field;
-use rules::field::{Obstacle, Walls};
+use rules::field::{Flag, Obstacle, Walls};
+use rules::{Field, Rules};
 use scenario::{Drawn, Scenario, Source, Vehicle};
 use serde_json::{Map, Value, json};
 
@@ -22,7 +22,7 @@ pub(super) fn chart(scenario: &Scenario, water: &Water) -> Value {
         "sea": scenario.sea.name,
         "teams": scenario.teams.iter().map(|team| json!({"name": team.name})).collect::<Vec<_>>(),
         "vehicles": scenario.vehicles.iter().map(|one| vehicle(scenario, one)).collect::<Vec<_>>(),
-        "field": field(&scenario.field),
+        "field": field(&scenario.field, rules),
         "radii": {
             "grab_m": rules.grab_radius_m,
             "tag_m": rules.tag_radius_m,
@@ -52,13 +52,10 @@ fn vehicle(scenario: &Scenario, vehicle: &Vehicle) -> Value {
     })
 }
 
-fn field(field: &Field) -> Value {
+fn field(field: &Field, rules: &Rules) -> Value {
     let plan = &field.plan;
     let zones = field.zones.iter().enumerate();
-    let flags = field
-        .flags
-        .iter()
-        .map(|flag| (flag.team.index(), flag.home));
+    let flags = field.flags.iter().map(|one| flag(one, rules));
     json!({
         "name": plan.name,
         "datum": [plan.datum.lat_deg, plan.datum.lon_deg],
@@ -67,8 +64,29 @@ fn field(field: &Field) -> Value {
         "corners": places(&field.corners),
         "zones": zones.map(|(team, zone)| json!({"team": team, "corners": places(&zone.corners)})).collect::<Vec<_>>(),
         "scrimmage": places(&field.scrimmage),
-        "flags": flags.map(|(team, at)| json!({"team": team, "x": at.east, "y": at.north})).collect::<Vec<_>>(),
+        "flags": flags.collect::<Vec<_>>(),
         "obstacles": plan.obstacles.iter().map(obstacle).collect::<Vec<_>>(),
+    })
+}
+
+fn flag(flag: &Flag, rules: &Rules) -> Value {
+    let radii = rules.radii_of(flag);
+    let route = flag.settings.route.as_ref();
+    let route = route.map(|route| {
+        let points = places(&route.points);
+        json!({"points": points, "ends_m": route.ends_m, "speed_m_s": route.speed_m_s})
+    });
+    json!({
+        "team": flag.team.index(),
+        "x": flag.start.east,
+        "y": flag.start.north,
+        "route": route,
+        "radii": {
+            "grab_m": radii.grab_m,
+            "capture_m": radii.capture_m,
+            "untag_m": radii.untag_m,
+            "keepout_m": radii.keepout_m,
+        },
     })
 }
 
@@ -100,6 +118,8 @@ fn places(corners: &[Ned]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rules::field::Route;
+    use std::path::Path;
 
     fn chart(file: &str, water: &Water) -> Value {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -163,10 +183,32 @@ mod tests {
             json!([[0.0, 0.0], [0.0, 80.0], [160.0, 80.0], [160.0, 0.0]])
         );
         assert_eq!(field["scrimmage"], json!([[80.0, 0.0], [80.0, 80.0]]));
-        assert_eq!(field["flags"][0], json!({"team": 0, "x": 20.0, "y": 40.0}));
+        let flag = &field["flags"][0];
+        let want = json!({
+            "team": 0, "x": 20.0, "y": 40.0, "route": null,
+            "radii": {"grab_m": 10.0, "capture_m": 10.0, "untag_m": 10.0, "keepout_m": 0.0},
+        });
+        assert_eq!(*flag, want);
         assert_eq!(field["walls"], false);
         assert_eq!(chart["waves"], json!([]));
         assert_eq!(chart["points"], json!({"grab": 1, "capture": 2, "tag": 0}));
+    }
+
+    #[test]
+    fn a_flag_is_drawn_with_its_own_radii_and_path() {
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/games/pav01_vs_pav01.toml");
+        let mut scenario = scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let flag = &mut scenario.field.flags[0];
+        flag.settings.radii.grab_radius_m = Some(4.0);
+        let points = vec![flag.start, flag.start + Ned::from_xy(0.0, 20.0)];
+        flag.settings.route = Some(Route::new(points, 0.5));
+        let flag = &super::chart(&scenario, &Water::default())["field"]["flags"][0];
+        let radii = &flag["radii"];
+        assert_eq!([&radii["grab_m"], &radii["capture_m"]], [4.0, 10.0]);
+        let points = json!([[20.0, 40.0], [20.0, 60.0]]);
+        let route = json!({"points": points, "ends_m": [20.0, 40.0], "speed_m_s": 0.5});
+        assert_eq!(flag["route"], route);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::page::message::{BoatCurves, Curves, PageMessage};
 use analysis::{GameSeries, Sample};
 use messages::Order;
 use primitives::angle::compass_deg_from_rad;
-use primitives::{Ned, VehicleId, math};
+use primitives::{Ned, SimTime, VehicleId, math};
 use recording::Recording;
 use rules::Field;
 use std::sync::Arc;
@@ -120,11 +120,13 @@ fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec
             }
         }
         let at = boat.samples[sample].truth.at();
+        let now = SimTime::from_s(*time_s);
         let place = |flag: usize| -> Ned {
             let carrier = carriers[flag].and_then(|carrier| series.boats.get(carrier.index()));
-            carrier.map_or(field.flags[flag].home, |carrier| {
-                carrier.samples[sample].truth.at()
-            })
+            carrier.map_or_else(
+                || field.flags[flag].home(now),
+                |carrier| carrier.samples[sample].truth.at(),
+            )
         };
         let others =
             (0..field.flags.len()).filter(|flag| field.flags[*flag].team.index() != boat.team);
