@@ -44,7 +44,7 @@ const BATCH_BYTES: usize = 65_000;
 /// slow links, which would receive old pictures first.
 const QUEUE: (usize, usize) = (2, 16);
 /// The most boats whose pictures fit into the largest queue.
-pub const BOATS_MAX: usize = (QUEUE.1 - 1) * BATCH_BYTES / BOAT_BYTES;
+const BOATS_MAX: usize = (QUEUE.1 - 1) * BATCH_BYTES / BOAT_BYTES;
 
 /// The length, in batches, of a queue for the pictures of a game with this many boats. A queue
 /// drops a message that needs more batches than it has: with zenoh's two, no agent of a game with
