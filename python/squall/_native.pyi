@@ -12,6 +12,8 @@ class Setup(TypedDict):
     """A setup. Paths are scenario files; `squall.VectorEnv` explains the rest."""
 
     game: str
+    team_sizes: list[list[int]] | None
+    """By team: minimum and maximum."""
     observation: str
     frames: int
     action: str
@@ -44,7 +46,7 @@ class VectorEnvironment:
     """Parallel games. Each restarts in the step in which it ends.
 
     A row is a boat that receives actions: within each game first the boats of the learning team and then, if any opponent is the
-    policy itself, their enemies.
+    policy itself, their enemies. Each team has as many rows as its largest size.
 
     The arrays are created once. Only `step`, `restart` and `restart_games` overwrite them.
     """
@@ -77,6 +79,7 @@ class VectorEnvironment:
     """(rows,): whether the row's game was truncated."""
     rows: int
     rows_per_game: int
+    rows_per_team: int
     observation_names: list[str]
     state_names: list[str]
     """The names of the values of a state; empty without the setup's `state`."""
@@ -87,6 +90,7 @@ class VectorEnvironment:
     step_s: float
     """Simulated time per step, s."""
     boat_names: list[str]
+    boat_teams: list[int]
     team_names: list[str]
 
     def step(self, actions: NDArray[Any], restarts: bool = True) -> None:
@@ -114,7 +118,7 @@ class VectorEnvironment:
         """The newest recording completed since the last call, if any."""
 
     def boats(self, game: int) -> list[int | None]:
-        """The boat of each row of a game; None if it receives no actions."""
+        """The boat of each row of a game, as an index into `boat_names`; None if no boat receives the row's actions."""
 
     def standing(self, game: int) -> dict[str, int]:
         """The state of play of a game: its seed, the players, points and counts."""

@@ -20,6 +20,8 @@ from squall.setup import (
     action_space,
     actions_for,
     checked_seed,
+    checked_team_sizes,
+    has_boat,
     native_environment,
     needs_no_policy,
     observation_space,
@@ -49,10 +51,11 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
         self._recipe = functools.partial(type(self), seed=seed, render_mode=render_mode, state=state, options=options)
         self.metadata = {**self.metadata, "render_modes": available_modes(self.metadata["render_modes"])}
         self.render_mode = render_mode
-        names = self.native.boat_names
-        self.possible_agents = [names[boat] for boat in self.native.boats(0) if boat is not None]
+        self._per_team = self.native.rows_per_team
+        self._row = self._rows_of_agents(options)
+        self.possible_agents = list(self._row)
         self.agents: list[str] = []
-        self._per_team = len(names) // 2
+        self._playing: list[str] = []
         spaces = observation_space(self.native, options, None), action_space(self.native, None)
         self.observation_spaces = dict.fromkeys(self.possible_agents, spaces[0])
         self.action_spaces = {agent: action_space(self.native, None) for agent in self.possible_agents}
@@ -105,7 +108,9 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
             seed = checked_seed(seed)
             self.np_random, _ = gymnasium.utils.seeding.np_random(seed)
         self._game.reset(seed, self.np_random)
-        self.agents = list(self.possible_agents)
+        present = has_boat(self.native)
+        self._playing = [agent for agent in self.possible_agents if present[self._row[agent]]]
+        self.agents = list(self._playing)
         return self._shown(), self._infos()
 
     def step(
@@ -118,31 +123,44 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
         if self.phase is Phase.OVER and not actions:
             return {}, {}, {}, {}, {}
         check_phase(self.phase)
-        agents = self.possible_agents
+        agents = self._playing
         rewards, terminated, truncated = self._game.step(self._rows_of(actions))
         if terminated or truncated:
             self.agents = []
         ends = dict.fromkeys(agents, terminated), dict.fromkeys(agents, truncated)
-        return self._shown(), dict(zip(agents, rewards.tolist(), strict=True)), *ends, self._infos()
+        return self._shown(), {agent: float(rewards[self._row[agent]]) for agent in agents}, *ends, self._infos()
+
+    def _rows_of_agents(self, options: Options) -> dict[str, int]:
+        """The row of each boat that may play. The rows of the first agents' team come first."""
+        boats = list(zip(self.native.boat_names, self.native.boat_teams, strict=True))
+        first, sizes = self.native.standing(0)["team"], checked_team_sizes(options.get("team_sizes"))
+        rows = {}
+        for place, team in enumerate((first, 1 - first)[: self.native.rows // self._per_team]):
+            most = self._per_team if sizes is None else sizes[team][1]
+            names = [name for name, of_team in boats if of_team == team][:most]
+            rows.update({name: place * self._per_team + i for i, name in enumerate(names)})
+        return rows
 
     def _rows_of(self, actions: Any) -> NDArray[Any]:
-        """The agents' actions in order."""
+        """The agents' actions by row; any action for absent boats."""
         if not isinstance(actions, Mapping):
             raise ValueError(f"actions are {actions!r}, expected a dictionary with an entry for each agent")
-        agents = self.possible_agents
-        unknown = [agent for agent in actions if agent not in self.action_spaces]
+        agents = self._playing
+        unknown = [agent for agent in actions if agent not in agents]
         if unknown:
             raise ValueError(f"actions has entries for {unknown}, expected {agents}")
         missing = [agent for agent in agents if agent not in actions]
         if missing:
             raise ValueError(f"actions has no entries for {missing}")
-        rows = []
+        is_discrete = self.native.action_count is not None
+        rows = np.zeros(self.native.rows, np.int64) if is_discrete else np.zeros((self.native.rows, 2), np.float32)
         for agent in agents:
             try:
-                rows.append(actions_for(self.native, actions[agent], self.action_spaces[agent].shape))
+                action = actions_for(self.native, actions[agent], self.action_spaces[agent].shape)
             except ValueError as error:
                 raise ValueError(f"{agent}: {error}") from None
-        return np.concatenate(rows)
+            rows[self._row[agent]] = action[0]
+        return rows
 
     def render(self) -> NDArray[np.uint8] | None:
         """The game from above, (height, width, 3). None unless the render mode is "rgb_array".
@@ -156,16 +174,18 @@ class SquallParallelEnv(Recreated, ParallelEnv[str, NDArray[np.float32], Any]): 
         self._game.close()
 
     def _shown(self) -> Shown:
-        return dict(zip(self.possible_agents, self.native.observations.copy(), strict=True))
+        observations = self.native.observations.copy()
+        return {agent: observations[self._row[agent]] for agent in self._playing}
 
     def _infos(self) -> dict[str, dict[str, Any]]:
         standing, counts, masks = self.native.standing(0), self.native.counts.tolist(), action_mask(self.native)
         views = [standing, seen_by_enemy(standing)] if len(counts) > self._per_team else [standing]
         infos = {}
-        for place, agent in enumerate(self.possible_agents):
-            infos[agent] = {"counts": counts[place], **views[place // self._per_team]}
+        for agent in self._playing:
+            row = self._row[agent]
+            infos[agent] = {"counts": counts[row], **views[row // self._per_team]}
             if masks is not None:
-                infos[agent]["action_mask"] = masks[place]
+                infos[agent]["action_mask"] = masks[row]
         return infos
 
 
@@ -176,9 +196,9 @@ def parallel_env(
 
     With `team`, the agents are the boats of that team, and `opponents` are as in the other environments. Without it, all boats are
     agents, and `opponents` is not allowed. An agent's `info` is its team's state of play, as for `TeamEnv`; its `counts` says whether
-    the agent's actions take effect, which they do not while a tagged boat drives home. `action_mask` is as for `BoatEnv`. With `state`,
-    the environment also has `state()` and `state_space`: the truth about the game. Raises ValueError with all faults of options and
-    scenario files.
+    the agent's actions take effect, which they do not while a tagged boat drives home. `action_mask` is as for `BoatEnv`. With
+    `team_sizes`, `agents` are the boats of the current game. With `state`, the environment also has `state()` and `state_space`: the
+    truth about the game. Raises ValueError with all faults of options and scenario files.
     """
     if options.get("team") is not None:
         needs_no_policy(options, "one team's parallel_env")

@@ -24,7 +24,7 @@ class Event(NamedTuple):
     team: str | None
     """That boat's team; at the end of a game the winner, or None for a draw."""
     other: str | None
-    """The tagger, None if the boat was tagged for leaving the field; the second boat in a collision."""
+    """The tagger, None if the boundary or an obstacle tagged the boat; the second boat in a collision."""
 
 
 class State(Mapping[str, float]):
@@ -78,7 +78,7 @@ class RewardFunction:
         self._function, self._native = function, native
         self._index = {name: i for i, name in enumerate(native.state_names)}
         self._boats, self._teams = native.boat_names, native.team_names
-        self._team_of = [self._teams[int(team)] for team in native.scene(0)["boats"][:, 3]]
+        self._team_of = [self._teams[team] for team in native.boat_teams]
         self.begin()
 
     def begin(self) -> None:

@@ -23,11 +23,18 @@ Opponents = File | Sequence[tuple[float, File]]
 """A strategy, or several with their weights. "policy" is the policy itself: self-play."""
 
 
+TeamSizes = tuple[int, int] | tuple[tuple[int, int], tuple[int, int]]
+"""The minimum and maximum size of both teams, or of each."""
+
+
 class Options(TypedDict, total=False):
     """The options of all environments."""
 
     game: File
     """The game, by default "surveyor_2v2". Both teams must have the same number of boats."""
+    team_sizes: TeamSizes | None
+    """The minimum and maximum number of boats, drawn for each team and game, or such a pair for each team; the last boats of a team are
+    left out. Needs the observation "squall"; rows of absent boats are 0. None (default): all boats play."""
     observation: Literal["squall", "pyquaticus", "pyquaticus_2023", "pyquaticus_2026"]
     """A boat's observation: "squall" (default), the data of its sensors and radio, or the values of a version of Pyquaticus:
     "pyquaticus" (2024, 2025), "pyquaticus_2023" or "pyquaticus_2026"."""
@@ -88,6 +95,7 @@ def native_environment(
     starts = options.get("starts")
     setup: _native.Setup = {
         "game": path_of("games", options.get("game", "surveyor_2v2")),
+        "team_sizes": checked_team_sizes(options.get("team_sizes")),
         "observation": options.get("observation", "squall"),
         "frames": _number("frames", options.get("frames", 1), 255),
         "action": options.get("action", "pyquaticus"),
@@ -192,6 +200,31 @@ def needs_no_policy(options: Options, where: str) -> None:
 def _opponents(given: Opponents) -> list[tuple[float, str | None]]:
     pairs: Sequence[tuple[float, File]] = [(1.0, given)] if isinstance(given, (str, os.PathLike)) else given
     return [(float(weight), None if file == "policy" else path_of("strategies", file)) for weight, file in pairs]
+
+
+def checked_team_sizes(given: TeamSizes | None) -> list[list[int]] | None:
+    """The minimum and maximum size by team. Raises ValueError for other values."""
+    if given is None:
+        return None
+    try:
+        shape = np.shape(given)
+    except ValueError:
+        shape = ()
+    if shape not in ((2,), (2, 2)):
+        raise ValueError(f"team_sizes is {given!r}, expected (minimum, maximum), or such a pair for each team")
+    pairs: Sequence[Any] = [given, given] if shape == (2,) else given
+    return [[_number("team_sizes", number, 10**4, least=1) for number in pair] for pair in pairs]
+
+
+def has_boat(native: _native.VectorEnvironment) -> NDArray[np.bool_]:
+    """By row, whether a boat of the current game receives the row's actions."""
+    games = range(native.rows // native.rows_per_game)
+    return np.array([boat is not None for game in games for boat in native.boats(game)])
+
+
+def team_mean(rewards: NDArray[np.float32], boats: NDArray[np.bool_]) -> Any:
+    """The mean reward of the existing boats, by the last axis."""
+    return rewards.sum(axis=-1) / np.maximum(boats.sum(axis=-1), 1)
 
 
 def _number(name: str, number: Any, most: int, least: int = 0) -> int:

@@ -19,8 +19,10 @@ from squall.setup import (
     action_space,
     actions_for,
     checked_seed,
+    has_boat,
     needs_no_policy,
     observation_space,
+    team_mean,
 )
 
 
@@ -83,7 +85,8 @@ class _GameEnv(Recreated, gymnasium.Env[NDArray[np.float32], Any]):
         check_phase(self.phase)
         rows = actions_for(self.native, action, self.action_space.shape)
         rewards, terminated, truncated = self._game.step(rows)
-        return self._shown(), float(rewards.mean()), terminated, truncated, self._info(self.native.standing(0))
+        reward = float(team_mean(rewards, has_boat(self.native)))
+        return self._shown(), reward, terminated, truncated, self._info(self.native.standing(0))
 
     def render(self) -> NDArray[np.uint8] | None:
         """The game from above, (height, width, 3). None unless the render mode is "rgb_array".

@@ -25,8 +25,10 @@ from squall.setup import (
     actions_for,
     check_render_mode,
     checked_seed,
+    has_boat,
     native_environment,
     observation_space,
+    team_mean,
 )
 
 # gymnasium 1.0 lacks this enumeration.
@@ -46,10 +48,10 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
     `autoreset_mode="NextStep"`, for wrappers such as `NormalizeObservation`, the last observation is the step's own; the next step
     returns the first one of the new game, and ignores the actions of its rows.
 
-    `info["counts"]` (num_envs,) says whether a row's next action takes effect: a tagged boat drives home whatever its action, and
-    against a strategy the enemies need no actions (their rows are 0). A policy should ignore samples where it is False; a critic should learn from
-    them, or it misjudges being tagged. With discrete actions, `info["action_mask"]` has 1 for each possible action of each boat: only the
-    last one if none takes effect. `info["seed"]` (num_envs,) is the seed of the game.
+    `info["counts"]` (num_envs,) says whether a row's next action takes effect: a tagged boat drives home whatever its action, against a
+    strategy the enemies need no actions, and with `team_sizes` a boat may be absent (the rows of both are 0). A policy should ignore samples
+    where it is False; a critic should learn from them, or it misjudges being tagged. With discrete actions, `info["action_mask"]` has 1 for
+    each possible action of each boat: only the last one if none takes effect. `info["seed"]` (num_envs,) is the seed of the game.
 
     With `record`, every game or every `record_every`th is recorded. Each has an open file and a thread that writes it.
 
@@ -119,7 +121,7 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
         self._recordings = Recordings(self, self.native)
         self.render_mode, self.copy, self.games = render_mode, copy, games
         native = self.native
-        self.boats_per_team = 1 if mates is not None else len(native.boat_names) // 2
+        self.boats_per_team = native.rows_per_team
         self.boats_per_row = self.boats_per_team if row == "team" else 1
         self.rows_per_game = native.rows_per_game // self.boats_per_row
         self.num_envs = games * self.rows_per_game
@@ -204,7 +206,7 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
         native.step(rows, restarts=self._is_same_step)
         rewards = native.rewards if self._reward is None else self._reward.rewards(rows, has_ended)
         if self.boats_per_row > 1:
-            rewards = rewards.reshape(self.num_envs, self.boats_per_row).mean(axis=1)
+            rewards = team_mean(rewards.reshape(self.num_envs, self.boats_per_row), self._has_boat)
         terminated, truncated = native.terminated[self._first_of_row], native.truncated[self._first_of_row]
         if np.any(has_ended):
             self._note_seeds()
@@ -247,6 +249,8 @@ class VectorEnv(Recreated, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArr
     def _note_seeds(self) -> None:
         seeds = [self.native.standing(game)["seed"] for game in range(self.games)]
         self._seeds = np.repeat(np.array(seeds, dtype=np.uint64), self.rows_per_game)
+        if self.boats_per_row > 1:
+            self._has_boat = has_boat(self.native).reshape(self.num_envs, self.boats_per_row)
 
     def _info(self) -> dict[str, Any]:
         counts = self.native.counts

@@ -14,6 +14,7 @@ use std::path::PathBuf;
 #[pyo3(from_item_all)]
 pub(crate) struct Arguments {
     game: PathBuf,
+    team_sizes: Option<[[u32; 2]; 2]>,
     observation: String,
     frames: u8,
     action: String,
@@ -58,7 +59,7 @@ impl Arguments {
         Ok(RawSetup {
             game: self.game,
             sea: None,
-            team_sizes: None,
+            team_sizes: self.team_sizes,
             observation,
             action,
             helm: self.helm,

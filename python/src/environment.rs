@@ -258,6 +258,11 @@ impl VectorEnvironment {
     }
 
     #[getter]
+    fn rows_per_team(&self) -> usize {
+        self.games().setup().rows_per_team()
+    }
+
+    #[getter]
     fn observation_names(&self) -> Vec<String> {
         self.games().setup().observation_names()
     }
@@ -303,6 +308,13 @@ impl VectorEnvironment {
     }
 
     #[getter]
+    fn boat_teams(&self) -> Vec<usize> {
+        let games = self.games();
+        let vehicles = games.setup().scenario.vehicles.iter();
+        vehicles.map(|vehicle| vehicle.team.index()).collect()
+    }
+
+    #[getter]
     fn team_names(&self) -> Vec<String> {
         self.games()
             .setup()
@@ -316,11 +328,10 @@ impl VectorEnvironment {
     fn boats(&self, game: usize) -> PyResult<Vec<Option<usize>>> {
         let games = self.games();
         check_index(&games, game)?;
-        let boats = games.boats(game);
-        let rows = 0..games.rows().1;
-        Ok(rows
-            .map(|row| boats.get(row).map(|vehicle| vehicle.index()))
-            .collect())
+        let played = games.contest(game).scenario();
+        let boats = games.boats(game).iter();
+        let index = |boat| games.setup().whole_game_boat(played, boat).index();
+        Ok(boats.map(|boat| boat.map(index)).collect())
     }
 
     fn standing<'py>(&self, py: Python<'py>, game: usize) -> PyResult<Bound<'py, PyDict>> {
@@ -341,6 +352,8 @@ impl VectorEnvironment {
         let games = self.games();
         check_index(&games, game)?;
         let (contest, events) = games.last_step(game);
+        let played = contest.scenario();
+        let index = |boat| games.setup().whole_game_boat(played, boat).index();
         let parts = |logged: &Logged| {
             let boat = logged.event.vehicle();
             let team = match logged.event {
@@ -350,8 +363,8 @@ impl VectorEnvironment {
             (
                 logged.event.into(),
                 logged.at.as_s(),
-                boat.map(|boat| boat.index()),
-                logged.event.other().map(|other| other.index()),
+                boat.map(index),
+                logged.event.other().map(index),
                 team.map(|team| team.index()),
             )
         };

@@ -255,6 +255,7 @@ impl BoatMind {
         game::publish(
             community,
             scenario,
+            picture.stamp.valid_ns,
             (&picture.flags, &picture.score, &tagged),
             &mut |_| {},
         );

@@ -6,7 +6,7 @@ use analysis::alog;
 use gateway::geodesy::LocalFrame;
 use messages::picture::{FlagView, Nav};
 use primitives::math::decimal;
-use primitives::{Ned, TeamId, VehicleId};
+use primitives::{Ned, SimTime, TeamId, VehicleId};
 use scenario::Scenario;
 
 /// Colours that viewers know. A team with the name of a colour is drawn in that colour; all others

@@ -46,6 +46,7 @@ pub fn open_field() -> Field {
         depth_m: FIELD_M,
         flag_inset_m: 0.125 * FIELD_M,
         extra_flags: vec![],
+        default_flags: Default::default(),
         obstacles: vec![],
         walls: Walls::None,
     })

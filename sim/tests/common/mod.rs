@@ -281,6 +281,7 @@ pub(crate) fn empty_field(corner: Ned, along_deg: f64) -> Field {
         depth_m: 80.0,
         flag_inset_m: 20.0,
         extra_flags: vec![],
+        default_flags: Default::default(),
         obstacles: vec![],
         walls: Walls::None,
     })

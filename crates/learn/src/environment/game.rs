@@ -30,8 +30,8 @@ pub(super) struct Game {
     steps: u32,
     contest: Contest,
     runner: MindRunner,
-    /// The boats that receive actions; the learning policy's come first.
-    pilots: Vec<VehicleId>,
+    /// By row, the boat that receives the row's actions.
+    rows: Vec<Option<VehicleId>>,
     read: EventCursor,
     /// The number of events before the last step.
     events_before: usize,
@@ -57,16 +57,22 @@ impl Game {
         let scenario = contest.scenario();
         let enemy = TeamId(1 - side.learner.0);
         let is_self_play = matches!(setup.opponents[side.opponent].1, Player::Policy);
-        let pilots_of = |team| setup.pilots_of(scenario, team, seed);
-        let enemies = pilots_of(enemy).filter(|_| is_self_play);
-        let pilots: Vec<VehicleId> = pilots_of(side.learner).chain(enemies).collect();
+        let of_team = |team| {
+            let boats = setup.pilots_of(scenario, team, seed).map(Some);
+            boats
+                .chain(std::iter::repeat(None))
+                .take(setup.rows_per_team())
+        };
+        let enemies = of_team(enemy).map(|boat| boat.filter(|_| is_self_play));
+        let rows = of_team(side.learner).chain(enemies);
+        let rows: Vec<_> = rows.take(setup.rows_per_game()).collect();
         let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
             let is_learner = scenario.team_of(vehicle) == side.learner;
             match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {
                 (false, Player::Strategy(strategy), _) => {
                     agent::mind_by(scenario, vehicle, strategy)
                 }
-                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => {
+                (_, _, Some(strategy)) if !rows.contains(&Some(vehicle)) => {
                     agent::mind_by(scenario, vehicle, strategy)
                 }
                 (false, Player::Model(model), _) => {
@@ -85,7 +91,7 @@ impl Game {
             side,
             steps: 0,
             runner,
-            pilots,
+            rows,
             contest,
             read: EventCursor::default(),
             events_before: 0,
@@ -101,23 +107,19 @@ impl Game {
         game
     }
 
-    pub(super) fn boats_with_actions(&self) -> &[VehicleId] {
-        &self.pilots
+    pub(super) fn rows(&self) -> &[Option<VehicleId>] {
+        &self.rows
     }
 
-    pub(super) fn pilots(&self) -> usize {
-        self.pilots.len()
-    }
-
-    /// The pilot at an index of `pilots`, and its team's picture.
-    fn pilot(&mut self, place: usize) -> Option<(&mut Pilot, &Picture)> {
-        let vehicle = self.pilots[place];
+    /// The pilot of a row's boat, and its team's picture.
+    fn pilot(&mut self, row: usize) -> Option<(&mut Pilot, &Picture)> {
+        let vehicle = self.rows[row]?;
         let mind: &mut dyn Any = self.runner.mind_mut(vehicle)?;
         Some((mind.downcast_mut()?, self.contest.picture_of(vehicle)))
     }
 
-    pub(super) fn act(&mut self, place: usize, action: Action) {
-        if let Some((pilot, _)) = self.pilot(place) {
+    pub(super) fn act(&mut self, row: usize, action: Action) {
+        if let Some((pilot, _)) = self.pilot(row) {
             pilot.act(action);
         }
     }
@@ -172,22 +174,23 @@ impl Game {
             .unwrap_or_default()
     }
 
-    /// The boat's reward in the last step.
-    pub(super) fn reward_of(&self, place: usize) -> f64 {
-        self.rewards[self.pilots[place].index()]
+    /// The reward of a row's boat in the last step; 0 without a boat.
+    pub(super) fn reward_of(&self, row: usize) -> f64 {
+        self.rows[row].map_or(0.0, |boat| self.rewards[boat.index()])
     }
 
     /// Writes the boat's observation. Returns whether the boat's next action takes effect.
-    pub(super) fn observe(&mut self, place: usize, out: &mut [f32]) -> bool {
-        let Some((pilot, picture)) = self.pilot(place) else {
+    pub(super) fn observe(&mut self, row: usize, out: &mut [f32]) -> bool {
+        let Some((pilot, picture)) = self.pilot(row) else {
+            out.fill(0.0);
             return false;
         };
         out.copy_from_slice(pilot.observe(picture));
         pilot.obeys()
     }
 
-    pub(super) fn taught(&mut self, place: usize) -> Option<Action> {
-        self.pilot(place).and_then(|(pilot, _)| pilot.taught())
+    pub(super) fn taught(&mut self, row: usize) -> Option<Action> {
+        self.pilot(row).and_then(|(pilot, _)| pilot.taught())
     }
 
     pub(super) fn standing(&self) -> Standing {

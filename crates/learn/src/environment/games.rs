@@ -83,7 +83,7 @@ struct Slot {
     ended: Option<Finished>,
     /// The teacher's actions in the last step, by row.
     taught: Vec<Option<Action>>,
-    /// The critic's additional input, row by row: current, and at the end of the previous game.
+    /// The critic's additional input, row by row: current, and at the end of the last game.
     truth: [Vec<f32>; 2],
     /// Whether the boats have been observed: a second observation would be a second decision.
     is_shown: bool,
@@ -168,8 +168,7 @@ impl Games {
     }
 
     /// The values beyond the observations that a critic receives for a game, row by row: the
-    /// current ones, and those at the end of a game that ended in the last step. Rows of boats
-    /// without actions are omitted.
+    /// current ones, and those at the end of a game that ended in the last step.
     pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
         let [now, last] = &self.slots[game].truth;
         (now, last)
@@ -208,9 +207,9 @@ impl Games {
         self.slots[game].game.contest()
     }
 
-    /// The boats of a game that receive actions, in row order.
-    pub fn boats(&self, game: usize) -> &[VehicleId] {
-        self.slots[game].game.boats_with_actions()
+    /// The boat of each row of a game; `None` if no boat receives the row's actions.
+    pub fn boats(&self, game: usize) -> &[Option<VehicleId>] {
+        self.slots[game].game.rows()
     }
 
     /// A game's state of play.
@@ -407,22 +406,17 @@ impl Slot {
 
     fn play(&mut self, setup: &Setup, game: usize, actions: &[Action], rows: &mut Rows<'_>) {
         self.last = None;
-        let pilots = self.game.pilots();
-        actions
-            .iter()
-            .take(pilots)
-            .enumerate()
-            .for_each(|(i, action)| self.game.act(i, *action));
+        for (row, action) in actions.iter().enumerate() {
+            self.game.act(row, *action);
+        }
         let ending = self.game.step(setup);
-        rows.rewards.fill(0.0);
-        rows.rewards[..pilots]
-            .iter_mut()
-            .enumerate()
-            .for_each(|(i, reward)| *reward = self.game.reward_of(i) as f32);
+        for (row, reward) in rows.rewards.iter_mut().enumerate() {
+            *reward = self.game.reward_of(row) as f32;
+        }
         self.taught.clear();
         if setup.teacher.is_some() {
             self.taught
-                .extend((0..pilots).map(|place| self.game.taught(place)));
+                .extend((0..actions.len()).map(|row| self.game.taught(row)));
         }
         self.show(setup, rows);
         self.ended = (ending != Ending::None).then(|| Finished {
@@ -436,21 +430,16 @@ impl Slot {
     fn show(&mut self, setup: &Setup, rows: &mut Rows<'_>) {
         let size = rows.observations.len() / rows.rewards.len();
         self.is_shown = true;
-        rows.observations.fill(0.0);
-        rows.counts.fill(false);
-        for (i, observation) in rows
-            .observations
-            .chunks_exact_mut(size)
-            .take(self.game.pilots())
-            .enumerate()
-        {
-            rows.counts[i] = self.game.observe(i, observation);
+        for (row, observation) in rows.observations.chunks_exact_mut(size).enumerate() {
+            rows.counts[row] = self.game.observe(row, observation);
         }
         if setup.truth_size() > 0 {
             self.truth[0].clear();
+            let slots = setup.team_size();
             truth::write(
                 self.game.contest(),
-                self.game.boats_with_actions(),
+                self.game.rows(),
+                slots,
                 &mut self.truth[0],
             );
         }

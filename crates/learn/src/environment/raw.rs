@@ -28,8 +28,8 @@ pub struct RawSetup {
     pub game: PathBuf,
     /// The sea file. `None` means the game's.
     pub sea: Option<PathBuf>,
-    /// The number of boats of a team; see [`Setup::team_sizes`].
-    pub team_sizes: Option<[u32; 2]>,
+    /// The numbers of boats of the teams; see [`Setup::team_sizes`].
+    pub team_sizes: Option<[[u32; 2]; 2]>,
     /// The policies' observations.
     pub observation: RawObservation,
     /// The policies' actions.

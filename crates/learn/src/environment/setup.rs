@@ -52,9 +52,9 @@ pub enum Player {
 pub struct Setup {
     /// The game; the seed chooses its random values.
     pub scenario: Scenario,
-    /// The minimum and maximum number of boats in a team. A number is drawn for each team and game;
+    /// By team, the minimum and maximum number of boats. A number is drawn for each team and game;
     /// surplus boats, the team's last, are left out. `None`: all boats play.
-    pub team_sizes: Option<[u32; 2]>,
+    pub team_sizes: Option<[[u32; 2]; 2]>,
     /// The policies' observation and action spaces.
     pub spaces: Spaces,
     /// How actions reach the boats.
@@ -156,6 +156,10 @@ impl Setup {
         if self.scenario.teams.len() != 2 {
             return Err(SetupError::Teams(self.scenario.teams.len()));
         }
+        if self.scenario.draws_fleets() {
+            let allowed = "a number: `team_sizes` draws team sizes for learning";
+            return Err(wrong("count of a [[fleet]]", "a distribution", allowed));
+        }
         let [one, other] = [0, 1].map(|team| boats_of(&self.scenario, TeamId(team)).count());
         if one != other {
             return Err(SetupError::Uneven(one, other));
@@ -174,17 +178,17 @@ impl Setup {
     }
 
     fn check_team_sizes(&self, boats: usize) -> Result<(), SetupError> {
-        let Some([least, most]) = self.team_sizes else {
-            return Ok(());
-        };
-        if !(1 <= least && least <= most && most as usize <= boats) {
-            let allowed = format!("two ascending numbers from 1 to {boats}, the game's team size");
-            return Err(wrong("team_sizes", format!("[{least}, {most}]"), &allowed));
-        }
-        if self.spaces.observation.edition().is_some() || self.critic == CriticInput::Truth {
-            let allowed =
-                "observation \"squall\" and critic \"observation\", which fit teams of any size";
-            return Err(wrong("team_sizes", format!("[{least}, {most}]"), allowed));
+        for [least, most] in self.team_sizes.into_iter().flatten() {
+            let found = format!("[{least}, {most}]");
+            if !(1 <= least && least <= most && most as usize <= boats) {
+                let allowed =
+                    format!("two ascending numbers from 1 to {boats}, the game's team size");
+                return Err(wrong("team_sizes", found, &allowed));
+            }
+            if self.spaces.observation.edition().is_some() {
+                let allowed = "observation \"squall\", which fits teams of any size";
+                return Err(wrong("team_sizes", found, allowed));
+            }
         }
         Ok(())
     }
@@ -194,7 +198,7 @@ impl Setup {
     /// # Errors
     /// [`SetupError`] if the seed's random values are inconsistent.
     pub fn scenario_of(&self, seed: u64) -> Result<Cow<'_, Scenario>, SetupError> {
-        let Some([least, most]) = self.team_sizes else {
+        let Some(ranges) = self.team_sizes else {
             return Ok(Cow::Borrowed(&self.scenario));
         };
         let mut scenario = self.scenario.of_seed(seed)?;
@@ -202,6 +206,7 @@ impl Setup {
         scenario.recipe = None;
         let mut stream = Stream::new(seed, "team_sizes");
         let kept = [0, 1].map(|team| {
+            let [least, most] = ranges[usize::from(team)];
             let size = u64::from(least) + stream.below(u64::from(most - least) + 1);
             boats_of(&scenario, TeamId(team))
                 .take(size as usize)
@@ -221,6 +226,16 @@ impl Setup {
             fault.vehicles = left.map(VehicleId::at).collect();
         }
         Ok(Cow::Owned(scenario))
+    }
+
+    /// The boat of the whole game that corresponds to one of a game with this setup, from which
+    /// some may have been left out.
+    pub fn whole_game_boat(&self, played: &Scenario, boat: VehicleId) -> VehicleId {
+        let named = |name: &str| self.scenario.vehicle_by_name(name);
+        let whole = self
+            .team_sizes
+            .and_then(|_| named(&played.vehicles[boat.index()].name));
+        whole.unwrap_or(boat)
     }
 
     /// Checks that every role of the strategy applies the policy's choices.
@@ -283,19 +298,23 @@ impl Setup {
         self.teacher.as_ref().is_some_and(|teacher| teacher.drives)
     }
 
-    /// The number of rows per game: the boats that may receive actions.
+    /// The number of rows per game: for each policy's team, those of the largest team.
     pub fn rows_per_game(&self) -> usize {
-        let of_team = if self.mates.is_some() {
-            1
-        } else {
-            self.team_sizes
-                .map_or(self.team_size(), |[_, most]| most as usize)
-        };
         let is_self_play = self
             .opponents
             .iter()
             .any(|(_, player)| matches!(player, Player::Policy));
-        of_team * if is_self_play { 2 } else { 1 }
+        self.rows_per_team() * if is_self_play { 2 } else { 1 }
+    }
+
+    /// The number of rows of a policy's team.
+    pub fn rows_per_team(&self) -> usize {
+        let largest = |ranges: [[u32; 2]; 2]| ranges.map(|[_, most]| most).into_iter().max();
+        match self.team_sizes.and_then(largest) {
+            _ if self.mates.is_some() => 1,
+            Some(most) => most as usize,
+            None => self.team_size(),
+        }
     }
 
     /// The boats of a team that a policy controls in the game with this seed.
@@ -345,7 +364,7 @@ impl Setup {
     pub fn truth_size(&self) -> usize {
         match self.critic {
             CriticInput::Observation => 0,
-            CriticInput::Truth => truth::size(self.scenario.vehicles.len()),
+            CriticInput::Truth => truth::size(2 * self.team_size()),
         }
     }
 

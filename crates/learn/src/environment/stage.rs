@@ -22,7 +22,7 @@ impl Setup {
         let raw = RawSetup {
             game: stage.game.clone(),
             sea: stage.sea.clone(),
-            team_sizes: stage.team_sizes,
+            team_sizes: stage.team_sizes.map(|range| [range; 2]),
             observation: RawObservation::Space(training.observation),
             action: training.action,
             helm: stage.helm.clone(),

@@ -6,10 +6,11 @@
 //! Booleans are 0 or 1. The boat itself comes first, then its teammates, then its enemies, each in
 //! scenario order.
 
-use messages::{Picture, VehicleTruth};
+use messages::{Frame, Picture, VehicleTruth};
 use primitives::frame::{Body, Rotation, ned_from_body};
-use primitives::{Ned, VehicleId};
+use primitives::{Ned, TeamId, VehicleId};
 use rules::event::EventCursor;
+use scenario::Scenario;
 use sim::Contest;
 
 /// Values per boat.
@@ -59,8 +60,14 @@ pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
     of_boats.chain(GAME.map(str::to_owned)).collect()
 }
 
-/// Appends the values of each boat.
-pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) {
+/// Writes the values of each row's boat, with room for teams of `team_size` boats. Values without a
+/// boat are 0.
+pub(super) fn write(
+    contest: &Contest,
+    rows: &[Option<VehicleId>],
+    team_size: usize,
+    out: &mut Vec<f32>,
+) {
     // A default cursor, since past events do not matter.
     let mut cursor = EventCursor::default();
     cursor.read(contest.events());
@@ -68,74 +75,120 @@ pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) 
     // are stored next to the observation, and no policy ever receives them.
     let frame = contest.frame(&mut cursor);
     let scenario = contest.scenario();
-    let field = &scenario.field;
-    let half_m = (0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
     let waits = waits(contest);
-    for me in boats {
-        let team = scenario.team_of(*me);
-        let sign = if team.index() == 0 { 1.0 } else { -1.0 };
-        let axes = (field.along.scaled(sign), field.across.scaled(sign));
-        let mut push = |number: f64| out.push(number as f32);
-        let along = |vector: Ned| [vector.dot(axes.0), vector.dot(axes.1)];
-        let mut boat = |i: usize, truth: &VehicleTruth| {
-            let [forward_m, port_m] = along(truth.nav.at() - field.middle());
-            let turn = Rotation::from_heading(truth.nav.psi_rad);
-            let velocity = ned_from_body(
-                turn,
-                Body {
-                    ahead: truth.nav.surge_m_s,
-                    starboard: truth.nav.sway_m_s,
-                },
-            );
-            push(forward_m / half_m.0);
-            push(port_m / half_m.1);
-            along(turn.ahead()).into_iter().for_each(&mut push);
-            along(velocity)
-                .into_iter()
-                .for_each(|m_s| push(m_s / SPEED_M_S));
-            push(truth.nav.yaw_rate_rad_s);
-            [truth.tagged, truth.carrying >= 0, truth.outside]
-                .into_iter()
-                .for_each(|is| push(f64::from(u8::from(is))));
-            push(waits[i]);
+    let size = size(2 * team_size);
+    out.clear();
+    out.resize(rows.len() * size, 0.0);
+    for (me, values) in rows.iter().zip(out.chunks_exact_mut(size)) {
+        let Some(me) = *me else { continue };
+        let view = View::new(scenario, &frame, scenario.team_of(me));
+        let (slots, game) = values.split_at_mut(2 * team_size * BOAT.len());
+        let mut write = |slot: usize, i: usize| {
+            let numbers = view.boat(&frame.vehicles[i], waits[i]);
+            slots[slot * BOAT.len()..][..BOAT.len()].copy_from_slice(&numbers.map(|n| n as f32));
         };
-        boat(me.index(), &frame.vehicles[me.index()]);
-        for of_team in [true, false] {
-            for (i, truth) in frame.vehicles.iter().enumerate() {
-                let other = VehicleId::at(i);
-                if other != *me && (scenario.team_of(other) == team) == of_team {
-                    boat(i, truth);
-                }
-            }
+        write(0, me.index());
+        let (mut mates, mut enemies) = (1.., team_size..);
+        for i in (0..frame.vehicles.len()).filter(|i| *i != me.index()) {
+            let slots = if view.is_own(i) {
+                &mut mates
+            } else {
+                &mut enemies
+            };
+            slots.next().into_iter().for_each(|slot| write(slot, i));
         }
-        let carried = |own: bool| {
-            let of_team = |i: usize| (scenario.team_of(VehicleId::at(i)) == team) == own;
-            frame
-                .vehicles
-                .iter()
-                .enumerate()
-                .any(|(i, truth)| of_team(i) && truth.carrying >= 0)
+        let left = 1.0 - contest.now().as_s() / scenario.rules.time_limit.as_s().max(1.0);
+        game.copy_from_slice(&view.game(left).map(|number| number as f32));
+    }
+}
+
+/// A game as one team sees it.
+struct View<'a> {
+    scenario: &'a Scenario,
+    frame: &'a Frame,
+    team: TeamId,
+    /// Unit vectors ahead and to port.
+    axes: [Ned; 2],
+}
+
+impl<'a> View<'a> {
+    fn new(scenario: &'a Scenario, frame: &'a Frame, team: TeamId) -> View<'a> {
+        let field = &scenario.field;
+        let sign = if team.index() == 0 { 1.0 } else { -1.0 };
+        View {
+            scenario,
+            frame,
+            team,
+            axes: [field.along.scaled(sign), field.across.scaled(sign)],
+        }
+    }
+
+    fn is_own(&self, boat: usize) -> bool {
+        self.scenario.team_of(VehicleId::at(boat)) == self.team
+    }
+
+    fn along(&self, vector: Ned) -> [f64; 2] {
+        self.axes.map(|axis| vector.dot(axis))
+    }
+
+    fn boat(&self, truth: &VehicleTruth, wait: f64) -> [f64; BOAT.len()] {
+        let field = &self.scenario.field;
+        let [forward_m, port_m] = self.along(truth.nav.at() - field.middle());
+        let turn = Rotation::from_heading(truth.nav.psi_rad);
+        let velocity = Body {
+            ahead: truth.nav.surge_m_s,
+            starboard: truth.nav.sway_m_s,
         };
-        push(f64::from(u8::from(carried(true))));
-        push(f64::from(u8::from(carried(false))));
-        let points: f64 = frame.score.iter().map(|points| f64::from(*points)).sum();
-        push((2.0 * f64::from(frame.score[team.index()]) - points) / POINTS);
-        let limit_s = scenario.rules.time_limit.as_s().max(1.0);
-        push((1.0 - contest.now().as_s() / limit_s).max(0.0));
-        let sea = frame.sea;
-        let wind = Ned {
+        let heading = self.along(turn.ahead());
+        let velocity_m_s = self.along(ned_from_body(turn, velocity));
+        [
+            forward_m / (0.5 * field.plan.width_m),
+            port_m / (0.5 * field.plan.depth_m),
+            heading[0],
+            heading[1],
+            velocity_m_s[0] / SPEED_M_S,
+            velocity_m_s[1] / SPEED_M_S,
+            truth.nav.yaw_rate_rad_s,
+            number(truth.tagged),
+            number(truth.carrying >= 0),
+            number(truth.outside),
+            wait,
+        ]
+    }
+
+    /// The values of the game. `left` is the remaining fraction of its time.
+    fn game(&self, left: f64) -> [f64; GAME.len()] {
+        let carried = |own: bool| {
+            let vehicles = self.frame.vehicles.iter().enumerate();
+            let mut carriers = vehicles.filter(|(_, truth)| truth.carrying >= 0);
+            number(carriers.any(|(i, _)| self.is_own(i) == own))
+        };
+        let score = &self.frame.score;
+        let points: f64 = score.iter().map(|points| f64::from(*points)).sum();
+        let sea = self.frame.sea;
+        let wind_m_s = self.along(Ned {
             north: sea.wind_north_m_s,
             east: sea.wind_east_m_s,
-        };
-        let current = Ned {
+        });
+        let current_m_s = self.along(Ned {
             north: sea.current_north_m_s,
             east: sea.current_east_m_s,
-        };
-        along(wind).into_iter().for_each(|m_s| push(m_s / WIND_M_S));
-        along(current)
-            .into_iter()
-            .for_each(|m_s| push(m_s / SPEED_M_S));
+        });
+        [
+            carried(true),
+            carried(false),
+            (2.0 * f64::from(score[self.team.index()]) - points) / POINTS,
+            left.max(0.0),
+            wind_m_s[0] / WIND_M_S,
+            wind_m_s[1] / WIND_M_S,
+            current_m_s[0] / SPEED_M_S,
+            current_m_s[1] / SPEED_M_S,
+        ]
     }
+}
+
+fn number(is: bool) -> f64 {
+    f64::from(u8::from(is))
 }
 
 /// By vehicle index: the remaining fraction of the time until the boat may tag again.

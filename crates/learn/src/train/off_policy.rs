@@ -162,17 +162,16 @@ fn play<A: Copy + Default>(
     for _ in 0..steps {
         let before = environment.observations().to_vec();
         let counts = environment.counts().to_vec();
-        let boats: Vec<usize> = (0..rows / per_game)
-            .map(|game| environment.boats(game).len())
-            .collect();
+        let boats = (0..rows / per_game).flat_map(|game| environment.boats(game));
+        let has_boat: Vec<bool> = boats.map(Option::is_some).collect();
         let chosen = choose(&before, &counts, replay.count());
         environment.step(&chosen.iter().copied().map(&action).collect::<Vec<Action>>())?;
-        let mut ended: Vec<Option<bool>> = vec![None; boats.len()];
+        let mut ended: Vec<Option<bool>> = vec![None; rows / per_game];
         environment
             .finished()
             .iter()
             .for_each(|one| ended[one.game] = Some(!one.cut_off));
-        for row in (0..rows).filter(|row| row % per_game < boats[row / per_game]) {
+        for row in (0..rows).filter(|row| has_boat[*row]) {
             let numbers = row * size..(row + 1) * size;
             let ended = ended[row / per_game];
             let shown = if ended.is_some() {

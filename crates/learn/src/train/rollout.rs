@@ -53,10 +53,8 @@ impl Rollout {
                 .extend_from_slice(environment.observations());
             rollout.states.extend_from_slice(environment.states());
             rollout.counts.extend_from_slice(environment.counts());
-            let boats = (0..rows / per_game).map(|game| environment.boats(game).len());
-            rollout
-                .sailed
-                .extend(boats.flat_map(|boats| (0..per_game).map(move |row| row < boats)));
+            let boats = (0..rows / per_game).flat_map(|game| environment.boats(game));
+            rollout.sailed.extend(boats.map(Option::is_some));
             rollout.steps.values.extend_from_slice(&values);
             let actions = if environment.setup().is_driven() {
                 vec![Action::Discrete(0); rows]

@@ -241,7 +241,7 @@ fn team_sizes_are_drawn_for_every_game_and_rows_without_a_boat_do_not_count() {
             frames: 1,
         }),
         opponents: vec![(1.0, None), (1.0, Some(file("strategies/pav01.toml")))],
-        team_sizes: Some([1, 6]),
+        team_sizes: Some([[1, 6]; 2]),
         episode_max_s: Some(0.5),
         ..raw()
     });
@@ -269,24 +269,25 @@ fn team_sizes_are_drawn_for_every_game_and_rows_without_a_boat_do_not_count() {
         } else {
             0
         };
-        let boats = environment.boats(0);
-        assert_eq!(boats.len(), sizes[learner] + enemies);
-        let teams = boats.iter().map(|boat| scenario.team_of(*boat).index());
-        assert!(teams.eq((0..boats.len()).map(|i| if i < sizes[learner] {
-            learner
-        } else {
-            1 - learner
-        })));
+        let boats = environment.boats(0).to_vec();
+        assert_eq!(boats.iter().flatten().count(), sizes[learner] + enemies);
+        for (row, boat) in boats.iter().enumerate() {
+            // Six rows for each team.
+            let team = if row < 6 { learner } else { 1 - learner };
+            let has_boat = row % 6 < if row < 6 { sizes[learner] } else { enemies };
+            let team_of = boat.map(|boat| scenario.team_of(boat).index());
+            assert_eq!(team_of, has_boat.then_some(team), "row {row} of {sizes:?}");
+        }
         let counts = environment.counts();
         assert!(
-            (0..12).all(|row| counts[row] == (row < boats.len())),
+            (0..12).all(|row| counts[row] == boats[row].is_some()),
             "{sizes:?}"
         );
         // Each slot of another boat begins with whether it is known; the distance comes fourth.
         let at = |boat: usize| environment.contest(0).world().state().boats[boat].pose.at;
         for (row, observation) in environment.observations().chunks_exact(size).enumerate() {
             let known: f32 = observation[44..].iter().step_by(16).sum();
-            let Some(me) = boats.get(row) else {
+            let Some(me) = &boats[row] else {
                 assert_eq!(known, 0.0);
                 continue;
             };
@@ -459,7 +460,7 @@ fn rewards_are_what_events_say_and_potentials_cancel_out() {
         let environment = begun(base.clone(), 1, 1, 5);
         let contest = environment.contest(0);
         let team = environment.standing(0).side.learner;
-        let flag = contest.scenario().field.flags[1 - team.index()].home;
+        let flag = contest.scenario().field.flags[1 - team.index()].start;
         let boats = contest.last_pictures()[team.index()].own.iter();
         boats
             .map(|boat| boat.nav.at().distance(flag) / contest.scenario().field.plan.width_m - 1.0)

@@ -5,6 +5,7 @@ use super::fixture::{checked, file, raw, written};
 use agent::{Action, ObservationSpace};
 use learn::environment::{CriticInput, Games, RawObservation, RawSetup, SetupError};
 use primitives::TeamId;
+use scenario::Drawn;
 
 fn games(raw: &RawSetup, count: usize, seed: u64) -> Games {
     Games::new(checked(raw), count, 1, seed, None).unwrap()
@@ -96,7 +97,9 @@ fn a_policy_of_one_boat_has_each_boat_by_turns() {
     };
     let one = games(&raw, 8, 0);
     assert_eq!(one.rows(), (8, 1));
-    let boats: Vec<usize> = (0..8).map(|game| one.boats(game)[0].index()).collect();
+    let boats: Vec<usize> = (0..8)
+        .map(|game| one.boats(game)[0].unwrap().index())
+        .collect();
     assert_eq!(boats, [0, 2, 1, 3, 0, 2, 1, 3]);
     let both = games(
         &RawSetup {
@@ -259,18 +262,17 @@ fn team_sizes_must_fit_the_game_and_the_spaces() {
     let pyquaticus = RawObservation::Space(ObservationSpace::Pyquaticus);
     let squall = raw().observation;
     let sizes = "expected two ascending numbers from 1 to 2, the game's team size";
-    let spaces = "expected observation \"squall\" and critic \"observation\"";
-    for (team_sizes, observation, critic, message) in [
-        ([1, 3], squall, CriticInput::Observation, sizes),
-        ([2, 1], squall, CriticInput::Observation, sizes),
-        ([0, 1], squall, CriticInput::Observation, sizes),
-        ([1, 2], squall, CriticInput::Truth, spaces),
-        ([1, 2], pyquaticus, CriticInput::Observation, spaces),
+    let spaces = "expected observation \"squall\"";
+    for (team_sizes, observation, message) in [
+        ([[1, 3]; 2], squall, sizes),
+        ([[1, 2], [1, 3]], squall, sizes),
+        ([[2, 1]; 2], squall, sizes),
+        ([[0, 1]; 2], squall, sizes),
+        ([[1, 2]; 2], pyquaticus, spaces),
     ] {
         let raw = RawSetup {
             team_sizes: Some(team_sizes),
             observation,
-            critic,
             ..raw()
         };
         let error = raw.check().map(|_| ()).map_err(|error| error.to_string());
@@ -279,6 +281,61 @@ fn team_sizes_must_fit_the_game_and_the_spaces() {
             "{team_sizes:?}: {error:?}"
         );
     }
+}
+
+#[test]
+fn each_team_has_sizes_of_its_own_and_a_critic_sees_absent_boats_as_zeros() {
+    let raw = RawSetup {
+        team_sizes: Some([[1, 1], [1, 2]]),
+        opponents: vec![(1.0, None)],
+        critic: CriticInput::Truth,
+        team: Some("blue".to_owned()),
+        ..raw()
+    };
+    let mut games = games(&raw, 20, 0);
+    shown(&mut games);
+    let setup = games.setup();
+    assert_eq!((games.rows().1, setup.rows_per_team()), (4, 2));
+    let size = setup.truth_size();
+    let mut both = 0;
+    for game in 0..20 {
+        let boats = games.boats(game);
+        let has_boat: Vec<bool> = boats.iter().map(Option::is_some).collect();
+        assert!(has_boat[..3] == [true, false, true], "{has_boat:?}");
+        both += u32::from(has_boat[3]);
+        let played = games.contest(game).scenario();
+        for (row, whole) in [(0, 0), (2, 2), (3, 3)] {
+            let boat = boats[row].map(|boat| setup.whole_game_boat(played, boat).index());
+            assert!(boat.is_none_or(|boat| boat == whole), "row {row}: {boat:?}");
+        }
+        // The boat itself, a teammate, two enemies, and the game.
+        let (truth, _) = games.truth(game);
+        assert_eq!(truth.len(), 4 * size);
+        for (row, values) in truth.chunks_exact(size).enumerate() {
+            let slots = values.chunks_exact(11).take(4);
+            let known: Vec<bool> = slots.map(|slot| slot.iter().any(|x| *x != 0.0)).collect();
+            let want = match row {
+                0 => [true, false, true, has_boat[3]],
+                1 => [false; 4],
+                2 => [true, has_boat[3], true, false],
+                _ if !has_boat[3] => [false; 4],
+                _ => [true, true, true, false],
+            };
+            assert_eq!(known, want, "row {row}");
+        }
+    }
+    assert!((4..=16).contains(&both), "{both} of 20 with two red boats");
+}
+
+#[test]
+fn a_game_with_fleets_of_random_size_is_not_for_learning() {
+    let mut setup = checked(&raw());
+    setup.scenario.drawn.push(Drawn {
+        parameter: "game/fleet.0.count".to_owned(),
+        value: 3.0,
+    });
+    let error = setup.check().unwrap_err().to_string();
+    assert!(error.contains("`team_sizes`"), "{error}");
 }
 
 #[test]
