@@ -184,6 +184,7 @@ fn imitation(options: &[(&str, &str)]) -> Training {
         .collect();
     let teacher = Some(Teacher {
         strategy: file("strategies/strategy_5.toml"),
+        drives: true,
         options,
     });
     let helm = Some(file("strategies/options.toml"));
