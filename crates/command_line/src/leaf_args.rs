@@ -99,7 +99,7 @@ pub struct LeafArgs {
 
 impl LeafArgs {
     /// The gateways on this machine that a command may address. If both the arguments and a gateway
-    /// name a game, it must be the same one. Otherwise the gateway counts unless the arguments
+    /// name a game, it must be the same one. Otherwise, the gateway counts unless the arguments
     /// select a game elsewhere; a stop includes it even then, since it should reach too many boats
     /// rather than too few.
     pub fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {

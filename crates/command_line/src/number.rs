@@ -96,7 +96,7 @@ pub fn significant(number: f64) -> String {
 }
 
 /// Lets all options take negative numbers, so that their parsers report the allowed range.
-/// Otherwise clap would report an unknown option.
+/// Otherwise, clap would report an unknown option.
 pub fn with_negative_numbers(command: Command) -> Command {
     command
         .mut_args(|arg| {
