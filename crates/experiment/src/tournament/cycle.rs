@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn every_victory_within_a_cycle_is_part_of_a_shortest_one() {
         let of = |count: usize, pairs: &[(usize, usize)]| {
-            let row = |one| (0..count).map(|other| pairs.contains(&(one, other)));
+            let row = |one| (0..count).map(move |other| pairs.contains(&(one, other)));
             cycles(&(0..count).map(|one| row(one).collect()).collect::<Vec<_>>())
         };
         assert_eq!(of(3, &[(0, 1), (1, 2), (0, 2)]), Vec::<Vec<usize>>::new());
