@@ -1,6 +1,7 @@
 //! `squall league`, and the leagues of `squall tournament`: results are kept, and only missing games
 //! are played.
 
+use crate::program::scenario;
 use crate::tournament::{json, output, place, tournament_of};
 use serde_json::Value;
 
@@ -165,5 +166,37 @@ fn an_endless_file_in_place_of_a_leagues_results_is_refused() {
         assert!(why.contains("cannot open the league"), "{endless}: {why}");
         assert!(!refused.status.success());
         std::fs::remove_file(&results).unwrap();
+    }
+}
+
+#[test]
+fn an_entry_is_a_strategy_file_a_trained_model_or_a_competition_entry() {
+    let dir = tempfile::tempdir().unwrap();
+    let model = scenario("policies/options.onnx");
+    std::fs::copy(model, dir.path().join("mine.onnx")).unwrap();
+    let file = tournament_of(&dir, "games = 2", &[("idle", "idle")]);
+    let text = std::fs::read_to_string(&file).unwrap() + "kind = \"planner\"\n";
+    let report = place(&dir, "report.json");
+    let play = |strategy: &str| {
+        let entry = format!("[[entry]]\nname = \"mine\"\nstrategy = {strategy:?}\n");
+        std::fs::write(&file, format!("{text}{entry}")).unwrap();
+        output(&["tournament", &file, "--json", &report])
+    };
+    let played = play("mine.onnx");
+    assert!(played.status.success(), "{played:?}");
+    let report = json(&report);
+    for (name, kind) in [("mine", "learned"), ("idle", "planner")] {
+        let rows = report["entries"].as_array().unwrap();
+        let row = rows.iter().find(|row| row["name"] == name).unwrap();
+        assert_eq!(row["kind"], kind, "{name}");
+    }
+    for (wrong, why) in [
+        ("host:none", "there is no solution.py in"),
+        ("none.onnx", "there is no file"),
+    ] {
+        let refused = play(wrong);
+        let said = String::from_utf8(refused.stderr).unwrap();
+        assert!(!refused.status.success() && said.contains(why), "{said}");
+        assert!(said.contains("tournament.toml:"), "{said}");
     }
 }

@@ -240,6 +240,7 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
         "score",
         "score_difference",
         "seeds",
+        "share",
         "wins",
         "won_of_decided",
     ];

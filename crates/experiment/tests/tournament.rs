@@ -591,39 +591,3 @@ fn each_sea_has_results_of_its_own_and_together_they_are_the_report() {
     let rules = EntryKind::RuleBased;
     assert_eq!(kinds, [rules, rules, EntryKind::Learned]);
 }
-
-#[test]
-fn an_entry_is_a_strategy_file_a_trained_model_or_a_competition_entry() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::create_dir(dir.path().join("rival")).unwrap();
-    std::fs::write(dir.path().join("rival/solution.py"), "").unwrap();
-    let model = shipped("policies/options.onnx").canonicalize().unwrap();
-    std::fs::copy(model, dir.path().join("mine.onnx")).unwrap();
-    let game = shipped("games/mctf_2026.toml").canonicalize().unwrap();
-    let idle = shipped("strategies/idle.toml").canonicalize().unwrap();
-    let file = dir.path().join("league.toml");
-    let load = |strategies: [&str; 3]| {
-        let entry = |(i, strategy): (usize, &&str)| {
-            format!("[[entry]]\nname = \"e{i}\"\nstrategy = {strategy:?}\n")
-        };
-        let entries: String = strategies.iter().enumerate().map(entry).collect();
-        let planner = "kind = \"planner\"\n";
-        std::fs::write(&file, format!("game = {game:?}\n{entries}{planner}")).unwrap();
-        load_file::<Tournament>(&file)
-    };
-    let idle = idle.to_str().unwrap();
-    let tournament = load(["host:rival", "mine.onnx", idle]);
-    let plan = Plan::new(&tournament.unwrap_or_else(|problems| panic!("{problems}"))).unwrap();
-    assert_eq!(
-        plan.kinds(),
-        [EntryKind::Public, EntryKind::Learned, EntryKind::Planner]
-    );
-    for (wrong, why) in [
-        ("host:none", "there is no solution.py in"),
-        ("none.onnx", "there is no file"),
-    ] {
-        let problems = load([wrong, "mine.onnx", idle]).unwrap_err().to_string();
-        assert!(problems.contains(why), "{problems}");
-        assert!(problems.contains("league.toml:"), "{problems}");
-    }
-}

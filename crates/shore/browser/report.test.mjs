@@ -191,7 +191,7 @@ test('a league is limited to a sea or a kind, and shows who beats whom and every
   const report = readJson(path);
   const cycle = ['strategy_4', 'pav01', 'idle'];
   const beats = (row, column) => cycle[(cycle.indexOf(row) + 1) % 3] === column;
-  for (const cell of report.seas[0].matrix) cell.won_of_decided = beats(cell.row, cell.column) ? { mean: 0.9, low: 0.8, high: 1 } : { mean: 0.1, low: 0, high: 0.2 };
+  for (const cell of report.seas[0].matrix) cell.share = beats(cell.row, cell.column) ? { mean: 0.9, low: 0.8, high: 1 } : { mean: 0.1, low: 0, high: 0.2 };
   report.seas[0].cycles = [cycle];
   writeFileSync(path, JSON.stringify(report));
   const sight = await Sight.load(t, browser, await view(t, league));

@@ -21,7 +21,7 @@ export class Dominance {
   /** Shows a table of results. Entries of other kinds than `kind` are dimmed, unless it is empty. */
   take({ entries, matrix, cycles = [] }, kind) {
     Object.assign(this, { entries, cycles, kind, chosen: null });
-    this.arrows = matrix.filter(({ row, column, won_of_decided }) => row !== column && won_of_decided?.low > 0.5).map(({ row, column }) => [row, column]);
+    this.arrows = matrix.filter(({ row, column, share }) => row !== column && share?.low > 0.5).map(({ row, column }) => [row, column]);
     const place = new Map(entries.map(({ name }, i) => [name, i]));
     this.place = (name) => place.get(name) ?? 0;
     this.draw();
@@ -35,8 +35,8 @@ export class Dominance {
   draw() {
     const { entries, arrows, cycles } = this;
     const pairs = (entries.length * (entries.length - 1)) / 2;
-    const facts = `An arrow leads from the winner to the loser of a pairing if the 95 % interval of the share of decisive games won is above 50 %: ${arrows.length} of ${pairs} pairings. `
-      + 'Entries are ordered clockwise by Elo rating; bold arrows contradict it. A circle’s area is the entry’s Nash share. Point at an entry for its arrows, or click it for its results.';
+    const facts = `An arrow leads from the winner to the loser of a pairing if the 95 % interval of the winner’s win rate is above 50 %: ${arrows.length} of ${pairs} pairings. `
+      + 'Entries are ordered clockwise by Elo rating, from the top; bold arrows contradict it. A circle’s area is the entry’s Nash share. Point at an entry for its arrows, or click it for its results.';
     const kinds = KINDS.filter((kind) => entries.some((entry) => entry.kind === kind));
     const legend = make('ul', 'legend', '', ...(kinds.length > 1 ? kinds : []).map((kind) => make('li', kindClass(kind), '', make('i', 'kind-dot'), make('span', '', plain(kind)))));
     this.sketch = this.picture();
@@ -45,7 +45,7 @@ export class Dominance {
   }
 
   cycleList(cycles) {
-    if (cycles.length === 0) return make('p', '', 'No cycles: no entry is beaten by one that it beats indirectly.');
+    if (cycles.length === 0) return make('p', '', 'These arrows form no cycle.');
     const button = (cycle) => {
       const one = make('button', '', [...cycle, cycle[0]].map(plain).join(' → '));
       Object.assign(one, { type: 'button' });
@@ -87,16 +87,17 @@ export class Dominance {
     const [from, to] = [this.at(winner), this.at(loser)];
     const length = Math.hypot(to.x - from.x, to.y - from.y);
     const [along, across] = [{ x: (to.x - from.x) / length, y: (to.y - from.y) / length }, 0.06 * length];
+    const [begin, end] = [this.size(winner), length - this.size(loser)].map((far) => ({ x: from.x + along.x * far, y: from.y + along.y * far }));
     const bend = { x: (from.x + to.x) / 2 - along.y * across, y: (from.y + to.y) / 2 + along.x * across };
-    const away = Math.hypot(to.x - bend.x, to.y - bend.y);
-    const into = { x: (to.x - bend.x) / away, y: (to.y - bend.y) / away };
-    const tip = { x: to.x - into.x * (this.size(loser) + 3), y: to.y - into.y * (this.size(loser) + 3) };
-    const base = { x: tip.x - into.x * 9, y: tip.y - into.y * 9 };
-    const wing = (side) => `${base.x - into.y * 4.5 * side} ${base.y + into.x * 4.5 * side}`;
+    // The head is past the middle, because the ends of arrows meet at their entries.
+    const at = (axis) => 0.16 * begin[axis] + 0.48 * bend[axis] + 0.36 * end[axis];
+    const slope = { x: 0.4 * (bend.x - begin.x) + 0.6 * (end.x - bend.x), y: 0.4 * (bend.y - begin.y) + 0.6 * (end.y - bend.y) };
+    const steep = Math.hypot(slope.x, slope.y);
+    const point = (forward, side) => `${at('x') + (forward * slope.x - side * slope.y) / steep} ${at('y') + (forward * slope.y + side * slope.x) / steep}`;
     const dimmed = this.kind !== '' && this.isDimmed(winner) && this.isDimmed(loser);
     return svg('g', { class: `arrow${this.isUpset([winner, loser]) ? ' upset' : ''}${dimmed ? ' dimmed' : ''}`, 'data-from': winner, 'data-to': loser },
-      svg('path', { class: 'line', d: `M${from.x} ${from.y}Q${bend.x} ${bend.y} ${base.x} ${base.y}` }),
-      svg('path', { class: 'head', d: `M${tip.x} ${tip.y}L${wing(1)}L${wing(-1)}Z` }));
+      svg('path', { class: 'line', d: `M${begin.x} ${begin.y}Q${bend.x} ${bend.y} ${end.x} ${end.y}` }),
+      svg('path', { class: 'head', d: `M${point(8, 0)}L${point(-5, 5)}L${point(-5, -5)}Z` }));
   }
 
   node({ name, kind, rating }) {

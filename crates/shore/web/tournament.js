@@ -67,7 +67,8 @@ export class Tournament {
     this.shown = null;
     this.fromAddress();
     const played = report.games_unplayed > 0 ? `, ${report.games_unplayed} games not played` : '';
-    const facts = `${plain(stem(report.game))}${[report.sea, ...this.seas.map(({ sea }) => sea)].filter(Boolean).map((sea) => `, ${plain(stem(sea))}`).join('')}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
+    const seas = [report.sea, ...this.seas.map(({ sea }) => sea)].filter(Boolean).map((sea) => plain(stem(sea)));
+    const facts = `${plain(stem(report.game))}${seas.length > 0 ? `, ${seas.length > 1 ? 'seas' : 'sea'} ${seas.join(', ')}` : ''}. ${report.entries.length} entries, ${report.games_per_pairing} games per pairing, `
       + `${report.seeds_counted} seeds from ${report.seed}${played}. Squall ${report.version} (${report.commit || 'unknown'}).`;
     return { name: report.tournament, facts, remarks: this.remarks() };
   }
@@ -154,8 +155,8 @@ export class Tournament {
     };
     const place = new Map(entries.map((entry, i) => [entry, i + 1]));
     const nash = entries.every((entry) => entry.nash);
-    const share = (of) => `${number(100 * of, 0)} %`;
-    const part = ({ mean, low, high }, words) => make('td', 'number', words(mean), make('small', '', this.hasFew || low == null ? '' : ` ${words(low)} to ${words(high)}`));
+    const share = (of) => `${number(100 * of, 0)}`;
+    const part = ({ mean, low, high }, words) => make('td', 'number', words(mean), make('small', '', this.hasFew || low == null ? '' : ` ${words(low)}…${words(high)}`));
     const count = (text, key) => ({ text, classes: 'number', key: (entry) => entry[key], cell: (entry) => cell(String(entry[key]), 'number') });
     const columns = [
       { text: 'Place', classes: 'number', rises: true, key: (entry) => place.get(entry), cell: (entry) => cell(String(place.get(entry)), 'number') },
@@ -164,12 +165,12 @@ export class Tournament {
       { text: 'Rating', classes: 'number', key: ({ rating }) => rating.elo, cell: ({ rating }) => cell(number(rating.elo, 0), 'number strong') },
       { text: '95 %', classes: 'number', cell: ({ rating }) => cell(this.interval(rating), 'number') },
       { text: '', cell: ({ rating }) => bar(rating) },
-      ...(nash ? [{ text: 'Nash share', classes: 'number', key: (entry) => entry.nash.share.mean, cell: (entry) => part(entry.nash.share, share) },
+      ...(nash ? [{ text: 'Nash %', classes: 'number', key: (entry) => entry.nash.share.mean, cell: (entry) => part(entry.nash.share, share) },
         { text: 'against it', classes: 'number', key: (entry) => entry.nash.lead.mean, cell: (entry) => part(entry.nash.lead, (of) => number(Math.round(of) + 0, 0)) }] : []),
       count('Won', 'wins'), count('Drawn', 'draws'), count('Lost', 'losses'),
       ...COUNTS.map(([text, key]) => ({ text, classes: 'number', key: (entry) => entry[key].mean, cell: (entry) => this.mean(entry[key]) })),
     ];
-    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', `Elo: a lead of 100 points means winning 64 %, 200 points 76 %. ${nash ? 'The Nash share is the entry’s part in the mixture of entries that no entry beats, followed by its Elo points against that mixture: cycles and copies of entries do not change it. ' : ''}Columns from Points on `
+    this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', `Elo: a lead of 100 points means winning 64 %, 200 points 76 %. ${nash ? 'Nash %: the entry’s part in the mixture of entries that no entry beats, and its Elo points against that mixture: cycles and copies of entries do not change it. ' : ''}Columns from Points on `
       + `are means per game${this.hasFew ? '' : ' with 95 % confidence intervals over seeds'}. An entry’s name leads to its opponents and results.`),
     sortedTable('Ratings', columns, entries.filter((entry) => this.isShown(entry)), this.orders.ratings, () => this.drawRatings(), 'list ratings'));
   }
@@ -205,12 +206,13 @@ export class Tournament {
     const against = [...this.cells.values()].filter(({ row }) => row === name);
     const elo = ({ column }) => this.entries.find((entry) => entry.name === column)?.rating.elo ?? 0;
     const count = (text, key) => ({ text, classes: 'number', key: (one) => one[key], cell: (one) => cell(String(one[key]), 'number') });
+    const part = ({ share }, text) => make('td', 'number strong', text, make('small', '', share?.high == null ? '' : ` ± ${number(100 * (share.high - share.mean), 0)}`));
     const columns = [
       { text: 'Opponent', key: ({ column }) => column, cell: ({ column }) => { const th = head('row', ''); th.append(this.linkTo(column)); return th; } },
       { text: 'Its rating', classes: 'number', key: elo, cell: (one) => cell(number(elo(one), 0), 'number') },
       count('Games', 'games'), count('Won', 'wins'), count('Drawn', 'draws'), count('Lost', 'losses'),
       { text: 'Win rate', classes: 'number', key: (one) => (one.wins + one.draws / 2) / one.games,
-        cell: (one) => cell(`${percent(one.wins + one.draws / 2, one.games)} %`, 'number strong') },
+        cell: (one) => part(one, `${percent(one.wins + one.draws / 2, one.games)} %`) },
       { text: 'Points', classes: 'number', key: ({ score }) => score[0], cell: ({ score }) => cell(`${number(score[0], 2)} : ${number(score[1], 2)}`, 'number') },
       { text: 'Difference', classes: 'number', key: (one) => one.score_difference, cell: (one) => cell(signed(one.score_difference), 'number') },
       { text: '', cell: (one) => this.gamesButton(one) },

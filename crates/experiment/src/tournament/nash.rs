@@ -220,14 +220,19 @@ mod tests {
             let found = nash(entries, &[games.collect()]).expect("all pairings are played");
             found.iter().map(|one| one.lead.mean).collect::<Vec<_>>()
         };
-        let games = [([0, 1], 1.0), ([1, 2], 1.0), ([2, 0], 0.5)];
+        let games = [([0, 1], 1.0), ([1, 2], 1.0), ([2, 0], 0.0)];
         let alone = leads(&games, 3);
-        let copy = [([3, 0], 0.5), ([1, 3], 1.0), ([2, 3], 0.5)];
+        let copy = [([3, 0], 0.5), ([1, 3], 0.0), ([2, 3], 0.0)];
         let copied = leads(&[&games[..], &copy].concat(), 4);
         for (alone, copied) in alone.iter().zip(&copied) {
             assert!((alone - copied).abs() < 1e-3, "{alone} and {copied}");
         }
-        assert!(alone[2] < -50.0, "dominated: {alone:?}");
+        // The odds are two to one: a win, and the prior of one win each.
+        let behind = -ELO * 2.0_f64.ln();
+        assert!(
+            alone[0] > -1e-3 && (alone[1] - behind).abs() < 1e-3,
+            "{alone:?}"
+        );
     }
 
     #[test]

@@ -52,8 +52,8 @@ pub struct Report {
     /// Each entry against each other; rows and columns are in the same order.
     pub matrix: Vec<Cell>,
     /// Cycles of entries in which each beats the next and the last beats the first, because the 95 %
-    /// interval of its share of decisive games is above a half. There is one for each pair that is
-    /// part of any cycle.
+    /// interval of its mean result is above a half. There is one for each pair that is part of any
+    /// cycle.
     #[serde(default)]
     pub cycles: Vec<Vec<String>>,
     /// The same in each sea, if there are several.
@@ -143,6 +143,10 @@ pub struct Cell {
     pub draws: u64,
     /// Games that the column won.
     pub losses: u64,
+    /// The row's mean result: 1 for a win, a half for a draw. The interval is over seeds; earlier
+    /// versions report none.
+    #[serde(default)]
+    pub share: Option<Estimate>,
     /// The row's share of the decisive games; `None` without decisive games. The interval is over
     /// seeds.
     pub won_of_decided: Option<Estimate>,

@@ -47,7 +47,7 @@ impl Results {
         let place = |name: &str| rows.iter().position(|row| row.name == name);
         let mut beats = vec![vec![false; rows.len()]; rows.len()];
         for cell in &matrix {
-            let low = cell.won_of_decided.and_then(|share| share.low);
+            let low = cell.share.and_then(|share| share.low);
             if let Some((row, column)) = place(&cell.row).zip(place(&cell.column)) {
                 beats[row][column] = row != column && low.is_some_and(|low| low > 0.5);
             }
@@ -190,6 +190,11 @@ fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell
             let [wins, _, losses] = standing(of_round(round));
             (wins as f64, (wins + losses) as f64)
         };
+        let result = |round: &&'a [Record]| {
+            let [wins, draws, losses] = standing(of_round(round)).map(|count| count as f64);
+            (wins + draws / 2.0, wins + draws + losses)
+        };
+        let share = Estimate::of_ratio(&rounds.iter().map(result).collect::<Vec<_>>());
         let won_of_decided = Estimate::of_ratio(&rounds.iter().map(decided).collect::<Vec<_>>());
         let points = |side: usize| {
             let of = |a: Appearance<'_>| {
@@ -209,6 +214,7 @@ fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell
             wins,
             draws,
             losses,
+            share,
             won_of_decided,
             score,
             score_difference,
