@@ -228,7 +228,7 @@ mod tests {
             assert!((alone - copied).abs() < 1e-3, "{alone} and {copied}");
         }
         // The odds are two to one: a win, and the prior of one win each.
-        let behind = -ELO * 2.0_f64.ln();
+        let behind = -ELO * std::f64::consts::LN_2;
         assert!(
             alone[0] > -1e-3 && (alone[1] - behind).abs() < 1e-3,
             "{alone:?}"
