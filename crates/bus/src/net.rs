@@ -43,8 +43,9 @@ const BATCH_BYTES: usize = 65_000;
 /// The smallest and the largest queue of zenoh's, in batches. A longer one would delay boats on
 /// slow links, which would receive old pictures first.
 const QUEUE: (usize, usize) = (2, 16);
-/// The most boats whose pictures fit into the largest queue.
-const BOATS_MAX: usize = (QUEUE.1 - 1) * BATCH_BYTES / BOAT_BYTES;
+/// The most boats of a game over a network. Joining agents receive the scenario, whose length grows
+/// by about 230 bytes per boat; of a game with 5,000 boats, half of the agents never received it.
+const BOATS_MAX: usize = 4_000;
 
 /// The length, in batches, of a queue for the pictures of a game with this many boats. A queue
 /// drops a message that needs more batches than it has: with zenoh's two, no agent of a game with
