@@ -127,7 +127,7 @@ fn whole_numbers_are_drawn_by_choice_and_a_lone_file_by_its_seed() {
     }
     heights.dedup();
     assert_eq!(heights.len(), 20);
-    let broken = sea.replace("choice = [16, 32]", "uniform = [16, 33]");
+    let broken = sea.replace("choice = [16, 32]", "normal = [24, 3.5]");
     std::fs::write(&path, broken).unwrap();
     let said = scenario::draw_file::<scenario::sea::Sea>(&path, 1).unwrap_err();
     let said = said.to_string();
