@@ -29,6 +29,7 @@ SKIPPED = {
     r"squall log runs/gateway-.*": "needs the recording of a boat's gateway",
     r"squall view --game day.*": "belongs to a game with boats, in its own terminal",
     r"squall run .*--blue imported.*|squall (strategy|policy) imported.*": "needs a model that the reader has trained",
+    r"squall league .*(mine\.onnx|host:).*": "needs a policy and an entry of the reader's; tests/command/league.rs has some",
     r"squall run .*--blue host:.*": "needs an entry of the reader's; python/tests/test_host.py has some",
     r"squall import .*": "needs the reader's logs; tests/command/import.rs has some",
     r"squall (trial|identify|gap|sea) .*field\.(csv|nmea).*": "needs the reader's log of a boat; tests/command/trial.rs has one",
@@ -47,6 +48,7 @@ LONG_S = 5
 LONG = {
     r"squall train .*": "best.toml",
     r"squall tournament (paper_2023|simple|learned|mine).*": None,
+    r"squall league\b(?!.*--help).*": None,
     r"squall sweep .*": None,
     r"squall run .*--pace realtime.*": None,
     r"squall run .*--emulate.*": None,
