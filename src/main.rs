@@ -80,7 +80,7 @@ enum Command {
         after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament strategy_4 strategy_3 --games 40\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
     )]
     Tournament(tournament_command::Args),
-    /// Plays the missing games of a league of all built-in strategies and your own.
+    /// Plays missing games of a league: built-in strategies and yours.
     #[command(
         after_help = "Examples:\n  squall league --games 10\n  squall league mine.onnx host:entry\n  squall view runs/league"
     )]
