@@ -191,7 +191,7 @@ fn an_entry_is_a_strategy_file_a_trained_model_or_a_competition_entry() {
         assert_eq!(row["kind"], kind, "{name}");
     }
     for (wrong, why) in [
-        ("host:none", "there is no solution.py in"),
+        ("host:none", "no solution.py in"),
         ("none.onnx", "there is no file"),
     ] {
         let refused = play(wrong);

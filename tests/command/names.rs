@@ -47,7 +47,7 @@ fn a_name_does_for_every_scenario_file() {
     assert!(
         printed(&dir, &["policy", "options"]).contains("options: a value of a strategy's variable")
     );
-    assert!(refusal(&dir, &["policy", "option"]).contains("one of chooser, options"));
+    assert!(refusal(&dir, &["policy", "option"]).contains("one of chooser, mctf_2026, options"));
     std::fs::write(
         dir.path().join("scenarios/strategies/based.toml"),
         "base = \"policy\"\n",
