@@ -403,7 +403,7 @@ fn what_names_nothing_in_the_game_is_left_out_of_a_frame() {
             object,
         };
         let frame = Frame {
-            events: (0..=22).map(record).collect(),
+            events: (0..=23).map(record).collect(),
             ..Frame::default()
         };
         frame
@@ -413,7 +413,7 @@ fn what_names_nothing_in_the_game_is_left_out_of_a_frame() {
     };
     assert_eq!(
         left(1, 1),
-        (0..=21).collect::<Vec<_>>(),
+        (0..=22).collect::<Vec<_>>(),
         "there are four boats, two flags and two teams"
     );
     assert_eq!(left(4, 1), [18, 19, 20, 21], "no such boat, no such team");

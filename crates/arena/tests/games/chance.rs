@@ -145,10 +145,13 @@ fn the_seed_matters_to_a_policy_that_draws_its_actions() {
     let model = shipped("policies/primitive_tag.onnx")
         .canonicalize()
         .expect("it is there");
+    let base = shipped("strategies/policy.toml")
+        .canonicalize()
+        .expect("it is there");
     let game = shipped("games/pyquaticus_2v2.toml");
     for is_sampled in [true, false] {
         let text = format!(
-            "base = \"policy\"\n[behaviour.learned]\nmodel = {model:?}\nsampled = {is_sampled}\n"
+            "base = {base:?}\n[behaviour.learned]\nmodel = {model:?}\nsampled = {is_sampled}\n"
         );
         std::fs::write(&path, text).expect("it is written");
         let overrides = Overrides {
