@@ -29,7 +29,7 @@ pub struct FlagSettings {
     pub route: Option<Route>,
 }
 
-/// A flag's own radii; [`Rules::radii_of`](crate::Rules::radii_of) adds those of the rules.
+/// A flag's own radii.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FlagRadii {
     /// Maximum distance for a grab, m. Default: that of the rules, as for the other radii.
