@@ -419,7 +419,9 @@ fn what_names_nothing_in_the_game_is_left_out_of_a_frame() {
     assert_eq!(left(4, 1), [18, 19, 20, 21], "no such boat, no such team");
     assert_eq!(
         left(3, 4),
-        [3, 4, 6, 7, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 20, 21, 22],
+        [
+            3, 4, 6, 7, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 20, 21, 22
+        ],
         "no such flag, no such other boat"
     );
 }
